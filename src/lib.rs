@@ -1,0 +1,11 @@
+//! Decides whether an assembly of solid parts locks, proves it, plans how it goes together, makes its parts.
+//!
+//! The flow, one way:
+//!
+//! ```text
+//! weave -> profile -> sites -> tile -> assembly -> contact -> { blocking, locking, sequence, repeats, flex, chirality } -> fab -> report
+//! ```
+
+pub mod assembly;
+pub mod contact;
+pub mod solid;
