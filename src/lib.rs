@@ -8,4 +8,7 @@
 
 pub mod assembly;
 pub mod contact;
+pub mod fault;
 pub mod solid;
+pub mod spec;
+pub mod weave;
