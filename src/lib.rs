@@ -9,6 +9,7 @@
 pub mod assembly;
 pub mod contact;
 pub mod fault;
+pub mod input;
 pub mod solid;
 pub mod spec;
 pub mod weave;

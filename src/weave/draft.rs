@@ -17,9 +17,12 @@ pub struct Draft {
 impl Draft {
     /// The draft of a rectangle of `wefts` x `warps` crossings (each at least 1) continued periodically.
     pub(super) fn from_fn(wefts: u32, warps: u32, over: impl Fn(u32, u32) -> bool) -> Draft {
-        let rows = least_period(wefts, |p| (p..wefts).all(|j| (0..warps).all(|i| over(j, i) == over(j - p, i))));
-        let columns = least_period(warps, |p| (p..warps).all(|i| (0..rows).all(|j| over(j, i) == over(j, i - p))));
-        let over = (0..rows).flat_map(|j| (0..columns).map(move |i| (j, i))).map(|(j, i)| over(j, i)).collect();
+        let rows =
+            least_period(wefts, |p| (p..wefts).all(|j| (0..warps).all(|i| over(j, i) == over(j - p, i))));
+        let columns =
+            least_period(warps, |p| (p..warps).all(|i| (0..rows).all(|j| over(j, i) == over(j, i - p))));
+        let over =
+            (0..rows).flat_map(|j| (0..columns).map(move |i| (j, i))).map(|(j, i)| over(j, i)).collect();
         Draft { wefts: rows, warps: columns, over }
     }
 
@@ -61,6 +64,15 @@ impl Draft {
             Kind::Weft => self.warps,
             Kind::Warp => self.wefts,
         }
+    }
+
+    /// The strands of this kind in one period.
+    pub fn strands(&self, kind: Kind) -> impl Iterator<Item = Strand> + use<> {
+        let count = match kind {
+            Kind::Weft => self.wefts,
+            Kind::Warp => self.warps,
+        };
+        (0..count as i32).map(move |index| Strand { kind, index })
     }
 
     /// One period drawn: a string for each weft, `X` where it passes over, `.` where under.
