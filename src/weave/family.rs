@@ -69,18 +69,39 @@ fn satin(draft: &Draft, step: u32) -> Family {
 
 /// Over and under runs of weft 0 over one period, turned so that the list is the greatest of its rotations.
 fn runs(draft: &Draft) -> Vec<u32> {
-    let ring: Vec<bool> = (0..draft.warps() as i32).map(|i| draft.weft_over(0, i)).collect();
+    let ring = sides(draft, Strand { kind: Kind::Weft, index: 0 });
     let lengths: Vec<u32> = ring_runs(&ring).into_iter().map(|(_, length)| length).collect();
     let turns = (0..lengths.len()).step_by(2).map(|k| [&lengths[k..], &lengths[..k]].concat());
     turns.max().unwrap_or_default()
 }
 
 /// Maximal runs of equal values around a ring, from the first that starts with `true`; none where all are equal.
-pub(super) fn ring_runs(ring: &[bool]) -> Vec<(bool, u32)> {
+fn ring_runs(ring: &[bool]) -> Vec<(bool, u32)> {
     let n = ring.len();
     let Some(start) = (0..n).find(|&k| ring[k] && !ring[(k + n - 1) % n]) else { return Vec::new() };
     let turned: Vec<bool> = (0..n).map(|k| ring[(start + k) % n]).collect();
     turned.chunk_by(|a, b| a == b).map(|run| (run[0], run.len() as u32)).collect()
+}
+
+/// Overs and unders of each weft where all wefts pass over `a` and under `b` crossings in turn and all warps under `a`
+/// and over `b`, so that one curve and its mirror image draw every strand; else the first strand that differs.
+pub fn wave(draft: &Draft) -> Result<(u32, u32), Strand> {
+    let first = Strand { kind: Kind::Weft, index: 0 };
+    let [(_, a), (_, b)] = ring_runs(&sides(draft, first))[..] else { return Err(first) };
+    let alike = |strand: &Strand| {
+        let expected = match strand.kind {
+            Kind::Weft => [(true, a), (false, b)],
+            Kind::Warp => [(true, b), (false, a)],
+        };
+        ring_runs(&sides(draft, *strand)) == expected
+    };
+    let odd = draft.strands(Kind::Weft).chain(draft.strands(Kind::Warp)).find(|strand| !alike(strand));
+    odd.map_or(Ok((a, b)), Err)
+}
+
+/// Whether the strand passes over, at each crossing of its period.
+fn sides(draft: &Draft, strand: Strand) -> Vec<bool> {
+    (0..draft.period(strand.kind) as i32).map(|k| draft.is_over(strand, k)).collect()
 }
 
 /// A run of crossings in which a strand stays on one side.
@@ -116,7 +137,7 @@ pub fn floats(draft: &Draft) -> Floats {
 }
 
 fn float(draft: &Draft, strand: Strand, over: bool) -> Float {
-    let ring: Vec<bool> = (0..draft.period(strand.kind) as i32).map(|k| draft.is_over(strand, k)).collect();
+    let ring = sides(draft, strand);
     if ring.iter().all(|&side| side == over) {
         return Float::Endless;
     }

@@ -12,7 +12,7 @@ mod wif;
 
 pub use draft::Draft;
 pub use drawn::{DrawnFault, MAX_DRAFT, parse_drawn};
-pub use family::{Family, Float, Floats, Hand, family, floats};
+pub use family::{Family, Float, Floats, Hand, family, floats, wave};
 pub use hanging::{Hanging, hangs_together};
 pub use wif::{parse_wif, to_wif};
 
