@@ -12,6 +12,7 @@ pub mod fault;
 pub mod locking;
 pub mod profile;
 pub mod sites;
+pub mod input;
 pub mod solid;
 pub mod spec;
 pub mod tile;
