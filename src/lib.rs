@@ -7,5 +7,7 @@
 //! ```
 
 pub mod assembly;
+pub mod blocking;
 pub mod contact;
+pub mod sequence;
 pub mod solid;
