@@ -11,3 +11,4 @@ pub mod blocking;
 pub mod contact;
 pub mod sequence;
 pub mod solid;
+pub mod verify;
