@@ -9,6 +9,13 @@
 pub mod assembly;
 pub mod blocking;
 pub mod contact;
+pub mod fault;
+pub mod locking;
+pub mod profile;
 pub mod sequence;
+pub mod sites;
 pub mod solid;
+pub mod spec;
+pub mod tile;
 pub mod verify;
+pub mod weave;

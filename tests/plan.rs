@@ -493,9 +493,10 @@ fn two_solvers_find_the_same_ball() {
     let mut dice = Dice(7);
     let (mut apart, mut overlap) = (0, 0);
     for _ in 0..2000 {
-        let (a, at) = (dice.lump(DVec3::ZERO), dice.vector() * 4.0);
+        let (a, at) = (dice.lump(DVec3::ZERO), dice.vector() * 3.0);
         let b = dice.lump(at);
-        let way = Way { direction: dice.vector().normalize(), length: 3.0 + 3.0 * dice.roll() };
+        let toward = at.normalize() + dice.vector() * 0.5;
+        let way = Way { direction: toward.normalize(), length: 3.0 + 3.0 * dice.roll() };
         let ours = by_program(&a, &b, way).expect("solved").radius;
         let theirs = ball_by_clarabel(&a, &b, way);
         assert!((ours - theirs).abs() < 1e-6, "{ours} {theirs}");
