@@ -1,5 +1,7 @@
 //! Takes an assembly, gives contact patches between parts.
 
+pub mod mesh;
+
 use crate::assembly::PartIx;
 use glam::DVec3;
 
