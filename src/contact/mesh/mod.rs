@@ -4,14 +4,19 @@
 //! motion. Not promised: contacts without a unique normal get no row (the safe side for *locked*, not for *free*); they
 //! are listed as assumed.
 
+mod cone;
 mod flush;
+mod local;
 mod overlap;
 mod polygon;
 mod shape;
+mod touch;
+
+pub use touch::Why;
 
 use crate::assembly::{Assembly, PartIx};
 use crate::contact::Patch;
-use flush::{Facing, Flush};
+use flush::Facing;
 use glam::DVec3;
 use parry3d_f64::bounding_volume::{Aabb, BoundingVolume};
 use parry3d_f64::partitioning::{Bvh, BvhBuildStrategy};
@@ -22,7 +27,7 @@ use shape::Shape;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Facts {
     pub kind: Kind,
-    /// Largest distance between the two surfaces over the patch, in model units.
+    /// No more than this lies between the two surfaces over the patch, in model units.
     pub gap: f64,
     /// Angle between the two surfaces, in radians; the normal is off by half of it at most.
     pub tilt: f64,
@@ -39,11 +44,23 @@ pub enum Kind {
     Point,
 }
 
+/// A place where two parts touch without a normal that could be vouched for: it got no row. That is the safe side for
+/// *locked*; a *free* verdict may owe something to it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Assumed {
+    pub a: PartIx,
+    pub b: PartIx,
+    /// One point, or the two ends of a stretch, in the assembly's frame.
+    pub corners: Vec<DVec3>,
+    pub why: Why,
+}
+
 /// The contacts of an assembly of meshes; `facts` runs parallel to `patches`.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct MeshContacts {
     pub patches: Vec<Patch>,
     pub facts: Vec<Facts>,
+    pub assumed: Vec<Assumed>,
 }
 
 /// Two parts that share space.
@@ -87,6 +104,7 @@ pub fn mesh_patches(assembly: &Assembly, tolerance: f64) -> Result<MeshContacts,
     Ok(good.into_iter().flatten().fold(MeshContacts::default(), |mut all, c| {
         all.patches.extend(c.patches);
         all.facts.extend(c.facts);
+        all.assumed.extend(c.assumed);
         all
     }))
 }
@@ -119,12 +137,20 @@ fn fault(assembly: &Assembly, a: &Shape, b: &Shape, d: overlap::Depth, origin: D
 
 fn touching(a: &Shape, b: &Shape, origin: DVec3, tolerance: f64) -> MeshContacts {
     let faces = flush::regions(a, b, Facing::Opposed, tolerance);
-    let patch = |f: &Flush| Patch {
-        a: a.part,
-        b: b.part,
-        normal: f.normal,
-        corners: f.corners.iter().map(|&p| p + origin).collect(),
-    };
-    let facts = |f: &Flush| Facts { kind: Kind::Face, gap: f.gap, tilt: f.tilt };
-    MeshContacts { patches: faces.iter().map(patch).collect(), facts: faces.iter().map(facts).collect() }
+    let small = touch::touches(a, b, &faces, tolerance);
+    let back = |corners: &[DVec3]| corners.iter().map(|&p| p + origin).collect::<Vec<_>>();
+    let patch =
+        |normal: DVec3, corners: &[DVec3]| Patch { a: a.part, b: b.part, normal, corners: back(corners) };
+    let flat = faces
+        .iter()
+        .map(|f| (patch(f.normal, &f.corners), Facts { kind: Kind::Face, gap: f.gap, tilt: f.tilt }));
+    let rest = small.rows.iter().map(|t| {
+        let kind = if t.corners.len() == 1 { Kind::Point } else { Kind::Edge };
+        (patch(t.normal, &t.corners), Facts { kind, gap: tolerance, tilt: 0.0 })
+    });
+    let (patches, facts) = flat.chain(rest).unzip();
+    let assumed = small.passed.iter();
+    let assumed =
+        assumed.map(|q| Assumed { a: a.part, b: b.part, corners: back(&q.corners), why: q.why }).collect();
+    MeshContacts { patches, facts, assumed }
 }

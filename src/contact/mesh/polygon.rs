@@ -87,7 +87,6 @@ pub(super) fn width(p: &[DVec2]) -> f64 {
 }
 
 /// Distance from x to the convex counter-clockwise polygon; zero inside.
-#[allow(dead_code)]
 pub(super) fn distance(p: &[DVec2], x: DVec2) -> f64 {
     let n = p.len();
     let inside = n > 2 && (0..n).all(|k| (p[(k + 1) % n] - p[k]).perp_dot(x - p[k]) >= 0.0);

@@ -2,6 +2,7 @@
 //!
 //! Not promised: that facets are planar beyond what their solid promises.
 
+use super::local::{Features, Form, Local};
 use crate::assembly::{Assembly, PartIx};
 use glam::DVec3;
 use parry3d_f64::bounding_volume::{Aabb, BoundingVolume};
@@ -11,6 +12,8 @@ use parry3d_f64::partitioning::{Bvh, BvhBuildStrategy};
 pub(super) struct Face {
     pub corners: Vec<u32>,
     pub normal: DVec3,
+    /// The face's own form: flat, with its normal.
+    pub local: Local,
 }
 
 /// A part in place; `points` are relative to the common origin so that nothing cancels far from the world's.
@@ -19,6 +22,7 @@ pub(super) struct Shape {
     pub points: Vec<DVec3>,
     pub faces: Vec<Face>,
     pub bounds: Aabb,
+    pub features: Features,
     tree: Bvh,
 }
 
@@ -27,16 +31,21 @@ impl Shape {
         let pose = assembly.part(part).pose;
         let solid = assembly.solid(part);
         let points: Vec<DVec3> = assembly.vertices(part).map(|p| p - origin).collect();
-        let place = |f: &crate::solid::Facet| Face {
-            corners: f.corners.clone(),
-            normal: pose.transform_vector3(f.normal).normalize(),
+        let place = |f: &crate::solid::Facet| {
+            let normal = pose.transform_vector3(f.normal).normalize();
+            Face {
+                corners: f.corners.clone(),
+                normal,
+                local: Local { form: Form::Flat, normals: vec![normal] },
+            }
         };
         let faces: Vec<Face> = solid.facets.iter().map(place).collect();
         let boxes: Vec<Aabb> =
             faces.iter().map(|f| around(f.corners.iter().map(|&i| points[i as usize]))).collect();
         let tree = Bvh::from_leaves(BvhBuildStrategy::Binned, &boxes);
         let bounds = around(points.iter().copied());
-        Shape { part, points, faces, bounds, tree }
+        let features = Features::of(&points, &faces);
+        Shape { part, points, faces, bounds, features, tree }
     }
 
     pub fn at(&self, i: u32) -> DVec3 {
@@ -70,11 +79,7 @@ impl Shape {
 impl Shape {
     /// Each edge once, as its two ends.
     pub fn edges(&self) -> impl Iterator<Item = (DVec3, DVec3)> + '_ {
-        let rings = self
-            .faces
-            .iter()
-            .flat_map(|f| (0..f.corners.len()).map(|k| (f.corners[k], f.corners[(k + 1) % f.corners.len()])));
-        rings.filter(|(i, j)| i < j).map(|(i, j)| (self.at(i), self.at(j)))
+        self.features.edges.iter().map(|e| (self.at(e.ends[0]), self.at(e.ends[1])))
     }
 }
 
