@@ -11,6 +11,7 @@ mod polygon;
 mod shells;
 mod soup;
 mod stl;
+mod threemf;
 
 pub use faults::{MeshFault, MeshFaults, Place};
 pub(crate) use shells::solid_angle;
@@ -68,6 +69,7 @@ pub fn read_mesh(path: &Path, reading: Reading) -> Result<Mesh, MeshFaults> {
     let soup = match kind.as_str() {
         "obj" => obj::read(&String::from_utf8_lossy(&bytes)),
         "stl" => stl::read(&bytes),
+        "3mf" => threemf::read(&bytes, reading.mm_per_unit),
         _ => Err(vec![found(
             Place::File,
             format!("no mesh format is called `{kind}`"),
