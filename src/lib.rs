@@ -8,4 +8,5 @@
 
 pub mod assembly;
 pub mod contact;
+pub mod report;
 pub mod solid;
