@@ -8,5 +8,11 @@
 
 pub mod assembly;
 pub mod contact;
+pub mod fault;
+pub mod profile;
 pub mod report;
+pub mod sites;
 pub mod solid;
+pub mod spec;
+pub mod tile;
+pub mod weave;

@@ -63,11 +63,14 @@ struct Paper {
     out: String,
     ink: Ink,
     width: usize,
+    /// Length of `out` right after the last chapter's title.
+    chapter_starts: usize,
 }
 
 /// The summary as lines, each ended by a newline.
 pub fn write(summary: &Summary, ink: Ink, width: Columns) -> String {
-    let mut paper = Paper { out: String::new(), ink, width: width.0.max(INDENT + LEAST_VALUE) };
+    let mut paper =
+        Paper { out: String::new(), ink, width: width.0.max(INDENT + LEAST_VALUE + GAP), chapter_starts: 0 };
     paper.styled(0, &summary.title, Style::Title);
     paper.wrapped(0, "", &summary.lead);
     for (title, answer) in &summary.chapters {
@@ -87,13 +90,19 @@ pub fn write(summary: &Summary, ink: Ink, width: Columns) -> String {
 
 impl Paper {
     fn chapter(&mut self, c: &Chapter) {
+        self.chapter_starts = self.out.len();
         if !c.headline.is_empty() {
             self.headline(c.tone, &c.headline);
         }
         c.words.iter().for_each(|w| self.wrapped(INDENT, "", w));
+        self.gap_before(!c.figure.is_empty());
         c.figure.iter().for_each(|l| self.line(INDENT, &clean(l)));
+        self.gap_before(!c.facts.is_empty());
         self.facts(&c.facts);
-        c.tables.iter().for_each(|t| self.table(t));
+        for t in &c.tables {
+            self.gap_before(true);
+            self.table(t);
+        }
     }
 
     fn headline(&mut self, tone: Tone, words: &str) {
@@ -123,11 +132,12 @@ impl Paper {
         }
     }
 
+    /// In columns; where even the longest words do not fit side by side, each row becomes a list of its own.
     fn table(&mut self, table: &Table) {
         if !table.caption.is_empty() {
             self.wrapped(INDENT, "", &table.caption);
         }
-        let widths = self.widths(table);
+        let Some(widths) = self.widths(table) else { return self.stacked(table) };
         let titles: Vec<String> = table.head.iter().map(|c| c.title.clone()).collect();
         for line in self.row(table, &titles, &widths) {
             self.styled(INDENT, &line, Style::Faint);
@@ -135,23 +145,37 @@ impl Paper {
         for row in &table.rows {
             self.row(table, row, &widths).iter().for_each(|line| self.line(INDENT, line));
         }
+        if table.rows.is_empty() {
+            self.line(INDENT, "none");
+        }
     }
 
-    /// As wide as the contents; where that is too wide, the widest columns give way.
-    fn widths(&self, table: &Table) -> Vec<usize> {
-        let count = |s: &str| clean(s).chars().count();
-        let mut widths: Vec<usize> = table.head.iter().map(|c| count(&c.title)).collect();
-        for row in &table.rows {
-            table.cells(row).zip(&mut widths).for_each(|((_, text), w)| *w = (*w).max(count(text)));
-        }
-        let room = (self.width - INDENT).saturating_sub(GAP * widths.len().saturating_sub(1));
-        while widths.iter().sum::<usize>() > room {
-            match widths.iter_mut().filter(|w| **w > 1).max() {
-                Some(widest) => *widest -= 1,
-                None => break,
+    fn stacked(&mut self, table: &Table) {
+        for (k, row) in table.rows.iter().enumerate() {
+            if k > 0 {
+                self.blank();
             }
+            let named = table.cells(row).filter(|(_, text)| !text.is_empty());
+            self.facts(&named.map(|(c, text)| (c.title.clone(), text.to_string())).collect::<Vec<_>>());
         }
-        widths
+    }
+
+    /// As wide as the contents; where that is too wide, the widest columns give way down to their longest words.
+    fn widths(&self, table: &Table) -> Option<Vec<usize>> {
+        let count = |s: &str| s.chars().count();
+        let longest_word = |s: &str| s.split(' ').map(count).max().unwrap_or(0);
+        let most = |measure: &dyn Fn(&str) -> usize| -> Vec<usize> {
+            let column =
+                |k: usize| table.rows.iter().filter_map(move |r| r.get(k)).chain([&table.head[k].title]);
+            (0..table.head.len()).map(|k| column(k).map(|t| measure(&clean(t))).max().unwrap_or(0)).collect()
+        };
+        let (mut widths, least) = (most(&count), most(&longest_word));
+        let room = (self.width - INDENT).checked_sub(GAP * widths.len().saturating_sub(1))?;
+        while widths.iter().sum::<usize>() > room {
+            let gives = (0..widths.len()).filter(|&k| widths[k] > least[k]).max_by_key(|&k| widths[k])?;
+            widths[gives] -= 1;
+        }
+        Some(widths)
     }
 
     /// The lines of a table's row: every cell wrapped inside its column.
@@ -192,6 +216,13 @@ impl Paper {
         let line = format!("{}{text}", " ".repeat(indent));
         self.out.push_str(line.trim_end());
         self.out.push('\n');
+    }
+
+    /// A blank line where a block follows, but not right below the chapter's title.
+    fn gap_before(&mut self, block: bool) {
+        if block && self.out.len() > self.chapter_starts {
+            self.blank();
+        }
     }
 
     fn blank(&mut self) {
