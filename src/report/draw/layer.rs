@@ -77,10 +77,10 @@ impl Layer {
     pub fn draw(&mut self, number: u32, seen: &[DVec3; 3]) {
         let rows = self.first_row..self.first_row + self.rows as i64;
         let (nearest, near, width, first) = (&mut self.nearest, &mut self.near, self.width, self.first_row);
-        spans(seen, width, rows, |y, xs, value| {
+        spans(seen, width, rows, |y, xs, ramp| {
             let row = (y - first) as usize * width;
             for x in xs {
-                let v = value(x);
+                let v = ramp.at(x);
                 if v > near[row + x] {
                     near[row + x] = v;
                     nearest[row + x] = number;
@@ -99,12 +99,24 @@ impl Layer {
     }
 }
 
+/// Nearness along one row of samples.
+pub(super) struct Ramp {
+    start: f64,
+    slope: f64,
+}
+
+impl Ramp {
+    pub fn at(&self, x: usize) -> f64 {
+        self.start + (x as f64 + 0.5) * self.slope
+    }
+}
+
 /// Calls `row(y, xs, nearness)` for each row of samples that the triangle covers.
 pub(super) fn spans(
     seen: &[DVec3; 3],
     width: usize,
     rows: Range<i64>,
-    mut row: impl FnMut(i64, Range<usize>, &dyn Fn(usize) -> f64),
+    mut row: impl FnMut(i64, Range<usize>, Ramp),
 ) {
     let area = turn(seen);
     if !area.is_finite() || area == 0.0 {
@@ -121,8 +133,8 @@ pub(super) fn spans(
         let Some((left, right)) = cut(seen, v) else { continue };
         let x0 = (left - 0.5 - SPAN_SLACK).ceil().max(0.0) as usize;
         let x1 = ((right - 0.5 + SPAN_SLACK).floor() + 1.0).clamp(0.0, width as f64) as usize;
-        let at_row = a.z + (v - a.y) * slope[1];
-        row(y, x0..x1, &|x| at_row + (x as f64 + 0.5 - a.x) * slope[0]);
+        let start = a.z + (v - a.y) * slope[1] - a.x * slope[0];
+        row(y, x0..x1, Ramp { start, slope: slope[0] });
     }
 }
 

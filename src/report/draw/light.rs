@@ -46,13 +46,13 @@ impl Light {
         Light { lamps }
     }
 
-    /// Linear light that leaves a white matte surface at `p` with unit normal `n`; `face` is the normal of its facet.
-    pub fn at(&self, p: DVec3, n: DVec3, face: DVec3) -> [f64; 3] {
+    /// Linear light that leaves a white matte surface at `p` with unit normal `n`.
+    pub fn at(&self, p: DVec3, n: DVec3) -> [f64; 3] {
         let mut sum = [0.0; 3];
         for lamp in &self.lamps {
             let facing = n.dot(lamp.toward);
             if facing > 0.0 {
-                let seen = facing * lamp.map.open(p, face);
+                let seen = facing * lamp.map.open(p, n);
                 (0..3).for_each(|k| sum[k] += lamp.colour[k] * seen);
             }
         }
@@ -130,10 +130,10 @@ impl DepthMap {
         let grid =
             |p: &DVec3| DVec3::new((p.x - self.low[0]) / self.texel, (p.y - self.low[1]) / self.texel, p.z);
         let height = &mut self.height;
-        spans(&[grid(a), grid(b), grid(c)], MAP, 0..MAP as i64, |y, xs, value| {
+        spans(&[grid(a), grid(b), grid(c)], MAP, 0..MAP as i64, |y, xs, ramp| {
             for x in xs {
                 let at = &mut height[y as usize * MAP + x];
-                *at = at.max(value(x) as f32);
+                *at = at.max(ramp.at(x) as f32);
             }
         });
     }

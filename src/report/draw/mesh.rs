@@ -12,10 +12,10 @@ use std::collections::{BTreeMap, BTreeSet};
 pub struct CreaseAngle(pub f64);
 
 impl Default for CreaseAngle {
-    /// 25 degrees. A centreline at 45 degrees and 4 samples, the coarsest in use, turns a smooth surface by at most
-    /// 90 / 4 = 22.5 degrees from facet to facet; the edges between faces of different kind turn by more.
+    /// 35 degrees: between the 22.5 that a smooth surface turns from facet to facet at 4 samples (90 / 4, the coarsest in
+    /// use, about a centreline at 45 degrees) and the 45 of a bevel, the flattest edge that is meant as one.
     fn default() -> Self {
-        CreaseAngle(25_f64.to_radians())
+        CreaseAngle(35_f64.to_radians())
     }
 }
 
@@ -45,6 +45,7 @@ pub enum EdgeKind {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Mesh {
     pub vertices: Vec<DVec3>,
+    /// Unit normals of the corners; entries that no triangle names are zero.
     pub normals: Vec<DVec3>,
     pub triangles: Vec<Triangle>,
     /// Outward unit normal of each facet.
@@ -60,7 +61,8 @@ impl Mesh {
     /// Facets with a corner that does not exist, or fewer than three corners, are left out.
     pub fn of(solid: &Solid, crease: CreaseAngle) -> Mesh {
         let edges = edges(solid, crease);
-        let surface = surfaces(solid.facets.len(), &edges);
+        let smooth = edges.iter().filter(|e| e.kind == EdgeKind::Smooth);
+        let surface = groups(solid.facets.len(), smooth.map(|e| e.facets));
         let creased = (edges.iter())
             .filter(|e| e.kind == EdgeKind::Crease)
             .map(|e| (e.facets[0].min(e.facets[1]), e.facets[0].max(e.facets[1])))
@@ -77,27 +79,26 @@ impl Mesh {
         mesh
     }
 
-    /// Cuts the facets into fans and gives every (vertex, surface) pair its own normal.
+    /// Cuts the facets into fans; around a vertex, all facets between two creases share one normal.
     fn fan(&mut self, solid: &Solid) {
-        let mut index = BTreeMap::new();
-        for (f, corners) in drawable(solid) {
-            let n = corners.len();
-            let normal_at: Vec<u32> = (0..n)
-                .map(|k| {
-                    let (before, here, after) = (corners[(k + n - 1) % n], corners[k], corners[(k + 1) % n]);
-                    let next = self.normals.len() as u32;
-                    let at = *index.entry((here, self.surface[f])).or_insert(next);
-                    if at == next {
-                        self.normals.push(DVec3::ZERO);
-                    }
-                    let [b, h, a] = [before, here, after].map(|i| self.vertices[i as usize]);
-                    self.normals[at as usize] += self.facets[f] * angle_at(b, h, a);
-                    at
-                })
-                .collect();
+        let corners: Vec<(u32, u32)> =
+            drawable(solid).flat_map(|(f, cs)| cs.iter().map(move |&v| (v, f as u32))).collect();
+        let index: BTreeMap<(u32, u32), u32> = corners.iter().copied().zip(0..).collect();
+        let smooth = self.edges.iter().filter(|e| e.kind == EdgeKind::Smooth);
+        let joined = smooth.flat_map(|e| e.ends.map(|v| e.facets.map(|f| index[&(v, f)])));
+        let fan = groups(corners.len(), joined);
+        self.normals = vec![DVec3::ZERO; corners.len()];
+        for (f, cs) in drawable(solid) {
+            let n = cs.len();
+            let normal = |k: usize| fan[index[&(cs[k], f as u32)] as usize];
+            for k in 0..n {
+                let [b, h, a] =
+                    [cs[(k + n - 1) % n], cs[k], cs[(k + 1) % n]].map(|i| self.vertices[i as usize]);
+                self.normals[normal(k) as usize] += self.facets[f] * angle_at(b, h, a);
+            }
             self.triangles.extend((1..n - 1).map(|k| Triangle {
-                corners: [corners[0], corners[k], corners[k + 1]],
-                normals: [normal_at[0], normal_at[k], normal_at[k + 1]],
+                corners: [cs[0], cs[k], cs[k + 1]],
+                normals: [normal(0), normal(k), normal(k + 1)],
                 facet: f as u32,
             }));
         }
@@ -142,20 +143,20 @@ fn edges(solid: &Solid, crease: CreaseAngle) -> Vec<Edge> {
         .collect()
 }
 
-/// The lowest facet of each smooth surface, for every facet.
-fn surfaces(count: usize, edges: &[Edge]) -> Vec<u32> {
+/// The lowest member of each group, for every member.
+fn groups(count: usize, joined: impl Iterator<Item = [u32; 2]>) -> Vec<u32> {
     let mut parent: Vec<u32> = (0..count as u32).collect();
-    for e in edges.iter().filter(|e| e.kind == EdgeKind::Smooth) {
-        let (a, b) = (root(&mut parent, e.facets[0]), root(&mut parent, e.facets[1]));
+    for pair in joined {
+        let [a, b] = pair.map(|m| root(&mut parent, m));
         parent[a.max(b) as usize] = a.min(b);
     }
-    (0..count as u32).map(|f| root(&mut parent, f)).collect()
+    (0..count as u32).map(|m| root(&mut parent, m)).collect()
 }
 
-fn root(parent: &mut [u32], mut f: u32) -> u32 {
-    while parent[f as usize] != f {
-        parent[f as usize] = parent[parent[f as usize] as usize];
-        f = parent[f as usize];
+fn root(parent: &mut [u32], mut m: u32) -> u32 {
+    while parent[m as usize] != m {
+        parent[m as usize] = parent[parent[m as usize] as usize];
+        m = parent[m as usize];
     }
-    f
+    m
 }

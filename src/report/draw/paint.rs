@@ -110,9 +110,11 @@ impl Studio<'_> {
         }
         sheets.insert(0, self.inked(solid, 1.0));
         let mut bytes = Vec::with_capacity(rows * self.size.width() as usize * 4);
+        let mut known = Vec::new();
         for y in 0..rows {
             for x in 0..self.size.width() as usize {
-                bytes.extend(self.pixel(&sheets, x, top + y));
+                known.clear();
+                bytes.extend(self.pixel(&sheets, x, top + y, &mut known));
             }
         }
         bytes
@@ -130,12 +132,11 @@ impl Studio<'_> {
     }
 
     /// Mean of the pixel's samples as bytes.
-    fn pixel(&self, sheets: &[Sheet], x: usize, y: usize) -> [u8; 4] {
-        let mut known = Vec::new();
+    fn pixel(&self, sheets: &[Sheet], x: usize, y: usize, known: &mut Known) -> [u8; 4] {
         let mut sum = [0.0; 4];
         for sy in 0..SAMPLES {
             for sx in 0..SAMPLES {
-                let c = self.sample(sheets, x * SAMPLES + sx, y * SAMPLES + sy, &mut known);
+                let c = self.sample(sheets, x * SAMPLES + sx, y * SAMPLES + sy, known);
                 (0..4).for_each(|k| sum[k] += c[k]);
             }
         }
@@ -143,7 +144,7 @@ impl Studio<'_> {
     }
 
     /// Premultiplied linear colour of one sample.
-    fn sample(&self, sheets: &[Sheet], x: usize, y: usize, known: &mut Vec<(Surface, [f64; 3])>) -> [f64; 4] {
+    fn sample(&self, sheets: &[Sheet], x: usize, y: usize, known: &mut Known) -> [f64; 4] {
         let mut colour = match self.look.scene.background {
             Background::Transparent => [0.0; 4],
             Background::Plain(Colour(c)) => [c[0], c[1], c[2], 1.0],
@@ -166,7 +167,7 @@ impl Studio<'_> {
     }
 
     /// Light is looked up once for each smooth surface in a pixel: it hardly changes inside one.
-    fn shade(&self, seen: u32, x: usize, y: usize, known: &mut Vec<(Surface, [f64; 3])>) -> [f64; 3] {
+    fn shade(&self, seen: u32, x: usize, y: usize, known: &mut Known) -> [f64; 3] {
         let f = &self.look.stage.triangles[seen as usize];
         let item = &self.look.scene.items[f.item as usize];
         let facet = item.mesh.triangles[f.triangle as usize].facet;
@@ -176,7 +177,7 @@ impl Studio<'_> {
         }
         let fine = SAMPLES as f64;
         let p = self.look.hit(f, (x as f64 + 0.5) / fine, (y as f64 + 0.5) / fine);
-        let c = item.colour.scaled(self.light.at(p, self.normal(f, p), plane(f)));
+        let c = item.colour.scaled(self.light.at(p, self.normal(f, p)));
         known.push((surface, c));
         c
     }
@@ -198,6 +199,9 @@ impl Studio<'_> {
 
 /// Item and smooth surface.
 type Surface = (u32, u32);
+
+/// The light already looked up in this pixel.
+type Known = Vec<(Surface, [f64; 3])>;
 
 fn over(c: [f64; 3], alpha: f64, below: [f64; 4]) -> [f64; 4] {
     let keep = 1.0 - alpha;
