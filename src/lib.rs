@@ -9,6 +9,7 @@
 pub mod assembly;
 pub mod contact;
 pub mod fault;
+pub mod locking;
 pub mod profile;
 pub mod report;
 pub mod sites;

@@ -1,5 +1,7 @@
 //! Takes an assembly, gives contact patches between parts.
 
+pub mod woven;
+
 use crate::assembly::PartIx;
 use glam::DVec3;
 
