@@ -13,6 +13,7 @@ pub mod fault;
 pub mod locking;
 pub mod profile;
 pub mod sequence;
+pub mod report;
 pub mod sites;
 pub mod input;
 pub mod solid;
