@@ -130,6 +130,23 @@ impl Body {
         all
     }
 
+    /// Facets that still have a triangle around `u` and `w` once these are one, ascending.
+    pub fn facets_left(&self, u: u32, w: u32) -> Vec<u32> {
+        let star = |c: u32| self.star[c as usize].iter();
+        let lives =
+            |t: &&u32| self.triangles[**t as usize].is_some_and(|tri| !(tri.contains(&u) && tri.contains(&w)));
+        let mut facets: Vec<u32> =
+            star(u).chain(star(w)).filter(lives).map(|&t| self.facet[t as usize]).collect();
+        facets.sort_unstable();
+        facets.dedup();
+        facets
+    }
+
+    /// Distance between where two corners came from, in mm.
+    pub fn edge_length(&self, u: u32, w: u32) -> f64 {
+        self.corners[u as usize].anchor.distance(self.corners[w as usize].anchor)
+    }
+
     /// Unites `w` into `u`, which is then at `at`.
     pub fn unite(&mut self, u: u32, w: u32, anchor: DVec3, at: DVec3) {
         let facets = self.united_facets(u, w);

@@ -12,6 +12,7 @@
 pub mod body;
 pub mod least;
 pub mod settle;
+pub mod weld;
 
 use crate::mesh::Mesh;
 use crate::shape::Shape;
@@ -45,9 +46,14 @@ pub enum Why {
     Vanished,
 }
 
+/// Edges shorter than this part of the depth are united before the move: for 0.2 mm that is 4 micrometres, a tenth of
+/// the finest step that the printers at hand can make. What it costs in clearance is found and mended by `relief`.
+const REACH: f64 = 0.02;
+
 /// Moves contact facets inward by `depth` mm. `thinnest`: least altitude of a triangle of the result, in mm.
 pub fn offset(shape: &Shape, contact: &[bool], depth: f64, thinnest: f64) -> Offset {
     let mut body = Body::new(shape, contact, depth);
+    weld::weld(&mut body, depth * REACH);
     let settled = settle::settle(&mut body, thinnest);
     let live = |c: usize| !body.star[c].is_empty();
     let no_room = (0..body.corners.len()).filter(|&c| live(c) && !body.corners[c].placed);

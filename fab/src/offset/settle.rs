@@ -32,7 +32,8 @@ struct Collapse {
     anchor: DVec3,
     at: DVec3,
     faulty: usize,
-    loss: f64,
+    /// The farther of the two ways by which the corners jump, in mm.
+    jump: f64,
 }
 
 /// Collapses edges of faulty triangles until none is left or nothing helps. `thinnest`: least altitude of a triangle,
@@ -102,7 +103,7 @@ fn collapse_one(body: &mut Body, t: usize, thinnest: f64, demand: Demand) -> boo
     let best = edges
         .iter()
         .flat_map(|&(u, w)| candidates(body, u.min(w), u.max(w), thinnest, demand))
-        .min_by(|a, b| a.faulty.cmp(&b.faulty).then(a.loss.total_cmp(&b.loss)));
+        .min_by(|a, b| a.jump.total_cmp(&b.jump).then(a.faulty.cmp(&b.faulty)));
     let Some(c) = best else { return false };
     body.unite(c.keep, c.drop, c.anchor, c.at);
     true
@@ -114,15 +115,16 @@ fn candidates(body: &Body, u: u32, w: u32, thinnest: f64, demand: Demand) -> Vec
         return vec![];
     }
     let facets = body.united_facets(u, w);
+    let live = body.facets_left(u, w);
     let (p, q) = (body.corners[u as usize].anchor, body.corners[w as usize].anchor);
     let before = faulty_around(body, u, w, None, thinnest);
     [p, q, (p + q) / 2.0]
         .into_iter()
         .filter_map(|anchor| {
-            let at = body.place(&facets, anchor)?;
+            let at = place_united(body, &facets, &live, anchor)?;
             let faulty = faulty_around(body, u, w, Some(at), thinnest);
-            let loss = facets.iter().map(|&f| -body.moved[f as usize].plane.excess(at)).fold(0.0, f64::max);
-            Some(Collapse { keep: u, drop: w, anchor, at, faulty, loss })
+            let jump = body.corners[u as usize].at.distance(at).max(body.corners[w as usize].at.distance(at));
+            Some(Collapse { keep: u, drop: w, anchor, at, faulty, jump })
         })
         .filter(|c| match demand {
             Demand::Fewer => c.faulty < before,
@@ -130,6 +132,14 @@ fn candidates(body: &Body, u: u32, w: u32, thinnest: f64, demand: Demand) -> Vec
             Demand::Any => true,
         })
         .collect()
+}
+
+/// Where the united corner goes: under the planes of vanished facets too, unless that costs more than another depth.
+/// Far from it, the plane of a facet that is gone forbids what the facet itself never did.
+fn place_united(body: &Body, all: &[u32], live: &[u32], anchor: DVec3) -> Option<DVec3> {
+    let loose = body.place(live, anchor)?;
+    let tight = body.place(all, anchor);
+    Some(tight.filter(|x| x.distance(anchor) <= loose.distance(anchor) + body.depth).unwrap_or(loose))
 }
 
 /// Faulty triangles around either corner; with `at`, as they would be with both corners there.
