@@ -26,35 +26,94 @@ pub fn nearest(a: (&Mesh, &Bvh), b: (&Mesh, &Bvh)) -> Near {
     best
 }
 
-fn descend(a: (&Mesh, &Bvh), b: (&Mesh, &Bvh), i: usize, j: usize, best: &mut Near) {
-    if a.1.boxes[i].distance_squared(&b.1.boxes[j]).sqrt() >= best.distance {
-        return;
-    }
-    let pairs = match (a.1.nodes[i], b.1.nodes[j]) {
-        (Node::Leaf { first, count }, Node::Leaf { first: f, count: c }) => {
-            return leaves(a.0, b.0, a.1.leaf(first, count), b.1.leaf(f, c), best);
-        }
-        (Node::Branch { left, right }, Node::Leaf { .. }) => vec![(left, j), (right, j)],
-        (Node::Leaf { .. }, Node::Branch { left, right }) => vec![(i, left), (i, right)],
-        (Node::Branch { left, right }, Node::Branch { left: l, right: r }) => {
-            vec![(left, l), (left, r), (right, l), (right, r)]
-        }
-    };
-    let mut pairs: Vec<_> =
-        pairs.into_iter().map(|(i, j)| (a.1.boxes[i].distance_squared(&b.1.boxes[j]), i, j)).collect();
-    pairs.sort_by(|x, y| x.0.total_cmp(&y.0).then((x.1, x.2).cmp(&(y.1, y.2))));
-    pairs.into_iter().for_each(|(_, i, j)| descend(a, b, i, j, best));
+/// Two triangles, one of each mesh, and their nearest points.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Close {
+    pub triangles: (u32, u32),
+    pub near: Near,
 }
 
-fn leaves(a: &Mesh, b: &Mesh, of_a: &[u32], of_b: &[u32], best: &mut Near) {
+/// All pairs of triangles nearer than `limit` mm, by index.
+pub fn closer_than(a: (&Mesh, &Bvh), b: (&Mesh, &Bvh), limit: f64) -> Vec<Close> {
+    let mut found = Vec::new();
+    let mut todo = if a.1.nodes.is_empty() || b.1.nodes.is_empty() { vec![] } else { vec![(0, 0)] };
+    while let Some((i, j)) = todo.pop() {
+        if a.1.boxes[i].distance_squared(&b.1.boxes[j]).sqrt() >= limit {
+            continue;
+        }
+        match leaves_or_children(a.1, b.1, i, j) {
+            Err(children) => todo.extend(children),
+            Ok((s, t)) => each_pair(a.0, b.0, s, t, limit, |triangles, near| {
+                found.push(Close { triangles, near });
+                limit
+            }),
+        }
+    }
+    found.sort_by_key(|c| c.triangles);
+    found
+}
+
+fn descend(a: (&Mesh, &Bvh), b: (&Mesh, &Bvh), i: usize, j: usize, best: &mut Near) {
+    let apart = |i: usize, j: usize| a.1.boxes[i].distance_squared(&b.1.boxes[j]).sqrt();
+    if apart(i, j) >= best.distance {
+        return;
+    }
+    match leaves_or_children(a.1, b.1, i, j) {
+        Ok((s, t)) => each_pair(a.0, b.0, s, t, best.distance, |_, near| {
+            *best = near;
+            near.distance
+        }),
+        Err(mut children) => {
+            children.sort_by(|x, y| apart(x.0, x.1).total_cmp(&apart(y.0, y.1)).then(x.cmp(y)));
+            children.into_iter().for_each(|(i, j)| descend(a, b, i, j, best));
+        }
+    }
+}
+
+/// The triangles of two leaves, or the pairs of nodes below.
+type Below<'a> = Result<(&'a [u32], &'a [u32]), Vec<(usize, usize)>>;
+
+fn leaves_or_children<'a>(a: &'a Bvh, b: &'a Bvh, i: usize, j: usize) -> Below<'a> {
+    match (a.nodes[i], b.nodes[j]) {
+        (Node::Leaf { first, count }, Node::Leaf { first: f, count: c }) => Ok((a.leaf(first, count), b.leaf(f, c))),
+        (Node::Branch { left, right }, Node::Leaf { .. }) => Err(vec![(left, j), (right, j)]),
+        (Node::Leaf { .. }, Node::Branch { left, right }) => Err(vec![(i, left), (i, right)]),
+        (Node::Branch { left, right }, Node::Branch { left: l, right: r }) => {
+            Err(vec![(left, l), (left, r), (right, l), (right, r)])
+        }
+    }
+}
+
+/// Calls `f` with each pair of triangles nearer than `limit`; `f` gives the limit for the next.
+fn each_pair(
+    a: &Mesh,
+    b: &Mesh,
+    of_a: &[u32],
+    of_b: &[u32],
+    mut limit: f64,
+    mut f: impl FnMut((u32, u32), Near) -> f64,
+) {
     for &s in of_a {
+        let p = a.corners(s as usize);
         for &t in of_b {
-            let near = triangles(a.corners(s as usize), b.corners(t as usize));
-            if near.distance < best.distance {
-                *best = near;
+            let q = b.corners(t as usize);
+            if apart_by_plane(p, q, limit) || apart_by_plane(q, p, limit) {
+                continue;
+            }
+            let near = triangles(p, q);
+            if near.distance < limit {
+                limit = f((s, t), near);
             }
         }
     }
+}
+
+/// Whether `q` lies on one side of the plane of `p`, at least `limit` away: the usual case for parted surfaces.
+fn apart_by_plane([a, b, c]: [DVec3; 3], q: [DVec3; 3], limit: f64) -> bool {
+    let n = (b - a).cross(c - a);
+    let far = limit * n.length();
+    let heights = q.map(|x| n.dot(x - a));
+    far > 0.0 && (heights.iter().all(|h| *h >= far) || heights.iter().all(|h| *h <= -far))
 }
 
 /// Nearest points of two triangles that do not cross: at a corner of one or on an edge of each.

@@ -7,7 +7,7 @@
 use super::least::{HalfSpace, nearest};
 use crate::mesh::Mesh;
 use crate::shape::{Facet, PLANE_ROUND_OFF, Shape};
-use glam::DVec3;
+use glam::{DAffine3, DVec3};
 
 /// A facet's plane after the move.
 #[derive(Clone, Copy, Debug)]
@@ -164,21 +164,48 @@ impl Body {
         self.corners[u as usize] = Corner { anchor, facets, at, placed: true };
     }
 
-    /// The live triangles over the corners that they use.
-    pub fn mesh(&self) -> Mesh {
+    /// Adds a plane of its own to one corner and moves it under it; false where there is no room.
+    pub fn push(&mut self, c: u32, plane: HalfSpace) -> bool {
+        let corner = &self.corners[c as usize];
+        let facets = [&corner.facets[..], &[self.moved.len() as u32]].concat();
+        self.moved.push(Moved { plane, contact: true });
+        let Some(at) = self.place(&facets, corner.anchor) else { return false };
+        let corner = &mut self.corners[c as usize];
+        (corner.facets, corner.at) = (facets, at);
+        true
+    }
+
+    /// The same body after a rigid motion.
+    pub fn posed(&self, pose: &DAffine3) -> Body {
+        let mut body = self.clone();
+        for c in &mut body.corners {
+            (c.anchor, c.at) = (pose.transform_point3(c.anchor), pose.transform_point3(c.at));
+        }
+        let shift = DVec3::from(pose.translation);
+        for m in &mut body.moved {
+            let normal = pose.transform_vector3(m.plane.normal);
+            m.plane = HalfSpace { normal, offset: m.plane.offset + normal.dot(shift) };
+        }
+        body
+    }
+
+    /// The live triangles over the corners that they use, and the corner of each vertex.
+    pub fn mesh(&self) -> (Mesh, Vec<u32>) {
+        let mut corner_of = Vec::new();
         let mut index = vec![u32::MAX; self.corners.len()];
         let mut mesh = Mesh::default();
         for t in self.triangles.iter().flatten() {
             let t = t.map(|c| {
                 if index[c as usize] == u32::MAX {
                     index[c as usize] = mesh.vertices.len() as u32;
+                    corner_of.push(c);
                     mesh.vertices.push(self.corners[c as usize].at);
                 }
                 index[c as usize]
             });
             mesh.triangles.push(t);
         }
-        mesh
+        (mesh, corner_of)
     }
 }
 
