@@ -3,7 +3,10 @@
 
 pub mod bvh;
 pub mod cross;
+pub mod ledger;
 pub mod mesh;
 pub mod near;
 pub mod offset;
+pub mod process;
 pub mod shape;
+mod toml_faults;
