@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use weavelock::weave::{
     Draft, Family, Float, Hand, Hanging, Kind, Origin, Strand, Weave, family, floats, hangs_together,
-    parse_drawn, parse_wif, to_wif,
+    parse_drawn, parse_wif, svg, terminal, to_wif,
 };
 
 fn fixture(name: &str) -> Weave {
@@ -209,4 +209,37 @@ fn weaves_on_the_command_line() {
         assert!(weave(text).is_err(), "{text}");
     }
     assert_eq!(Weave::abc(0, 65, 1).map_err(|f| f.0.len()), Err(2), "both faults at once");
+}
+
+#[test]
+fn terminal_drawing_shows_the_draft() {
+    let drawing = terminal(&abc(2, 2, 1), 80);
+    let lines: Vec<&str> = drawing.lines().collect();
+    assert_eq!(lines[0], "   7  ══┃┃┃┃══ ══┃┃┃┃══");
+    assert_eq!(lines[4], "     ┌────────┐");
+    assert_eq!(lines[8], "   0 │════┃┃┃┃│════┃┃┃┃");
+    assert_eq!(lines[9], "     └────────┘");
+    assert_eq!(lines[10], "       0 1 2 3  4 5 6 7");
+    for (draft, width) in
+        [(abc(64, 64, 63), 60), (abc(64, 64, 1), 0), (abc(1, 1, 1), 1), (drawn(&["X"]), 300)]
+    {
+        let drawing = terminal(&draft, width);
+        let drawn = drawing.lines().filter(|line| !line.contains("weft over"));
+        assert!(drawn.map(|line| line.chars().count()).max() <= Some(width.max(9)), "{drawing}");
+    }
+    assert!(terminal(&abc(64, 64, 63), 60).contains("only a part"));
+}
+
+#[test]
+fn svg_has_a_mark_for_each_crossing() {
+    for draft in [abc(1, 1, 1), abc(7, 1, 3), abc(3, 3, 2)] {
+        let picture = svg(&draft);
+        let paper = picture.split("point-paper").nth(1).expect("it has a point paper");
+        let (filled, blank) =
+            (paper.matches("#222222\" stroke").count(), paper.matches("#ffffff\" stroke").count());
+        let overs = draft.rows().concat().matches('X').count();
+        assert_eq!(filled * draft.rows().concat().len(), overs * (filled + blank));
+        assert!(filled + blank >= 64);
+    }
+    assert!(svg(&abc(64, 64, 63)).contains("larger than this picture"));
 }

@@ -113,7 +113,7 @@ impl Reader {
             Ok(n) if (1..=most).contains(&n) => Some(n),
             _ => {
                 let what = format!("{key} in [{section}] is {:?}, but it must be 1 to {most}", entry.value);
-                self.fault(Some(entry.line), what, "larger cloths are refused: export one repeat");
+                self.fault(Some(entry.line), what, "a whole number; of a larger cloth export one repeat");
                 None
             }
         }
