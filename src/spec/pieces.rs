@@ -100,8 +100,13 @@ fn apart<'t>(reader: &mut Reader<'t>, items: &[Field<'t>], pieces: &BTreeMap<usi
 /// Which parts are held by a list of ids or "rim"; with the fields of the ids.
 pub fn held_list<'t>(reader: &mut Reader<'t>, field: &Field<'t>) -> Option<(HeldSpec, Vec<Field<'t>>)> {
     let hint = "a list of part ids, as in held = [\"weft-0\"], or \"rim\" for every part at the edge";
-    if field.is_text() {
-        return reader.choice(field, &[("rim", ())]).map(|()| (HeldSpec::Rim, Vec::new()));
+    match field.as_text() {
+        Some("rim") => return Some((HeldSpec::Rim, Vec::new())),
+        Some(word) => {
+            reader.fault(field, format!("{} is neither a list nor \"rim\"", shown(word)), hint);
+            return None;
+        }
+        None => {}
     }
     let items = reader.list(field, hint)?;
     let ids: Vec<Option<&str>> = items.iter().map(|item| reader.text(item, hint)).collect();

@@ -28,8 +28,11 @@ pub struct Fields<'t> {
 }
 
 impl Field<'_> {
-    pub fn is_text(&self) -> bool {
-        matches!(self.value, Value::Text(_))
+    pub fn as_text(&self) -> Option<&str> {
+        match self.value {
+            Value::Text(text) => Some(text),
+            _ => None,
+        }
     }
 }
 
