@@ -1,5 +1,10 @@
 //! Promises about files that are wrong: all faults at once, each with its place and a hint, and never a panic.
 
+#[path = "../fuzz/driver.rs"]
+mod driver;
+#[path = "../fuzz/targets.rs"]
+mod targets;
+
 use std::fs;
 use std::path::{Path, PathBuf};
 use weavelock::assembly::Mobility;
@@ -196,5 +201,18 @@ fn hostile_texts_end() {
             let faults = parse(&text, Path::new("hostile"), syntax).expect_err("nothing of this is right");
             assert_sound(&faults);
         }
+    }
+}
+
+/// About a second for each reader; the long run is `cargo run --release --example fuzz`.
+#[test]
+fn readers_survive_mutants_of_the_fixtures() {
+    for (name, target, endings) in targets::READERS {
+        let outcome = driver::run(target, targets::corpus(endings), 1.0, 2);
+        if let Some(found) = outcome.found {
+            panic!("{name}: {}\n{}", found.why, String::from_utf8_lossy(&found.input));
+        }
+        println!("{name}: {} inputs, {} verdicts", outcome.inputs, outcome.verdicts);
+        assert!(outcome.inputs > 100 && outcome.verdicts > 5, "{name} was hardly tried");
     }
 }
