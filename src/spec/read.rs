@@ -133,13 +133,17 @@ fn name<'t>(reader: &mut Reader<'t>, root: &Fields<'t>) -> Option<String> {
         return Some(stem.unwrap_or_default());
     };
     let name = reader.text(&field, "the name of the assembly")?;
+    if name.contains('/') {
+        reader.fault(&field, "has a slash", "files are named after it, and they all lie in one folder");
+        return None;
+    }
     plain_name(reader, &field, name)
 }
 
 /// Longest name and id, in bytes, so that a file can be named after it with room for an ending.
 const MAX_NAME: usize = 200;
 
-/// A name that may become a file's: refused are control characters, and segments that lead out of a folder.
+/// A name that may become a file's, an id's slashes standing for folders: refused are control characters, and segments that lead out of a folder.
 pub fn plain_name(reader: &mut Reader<'_>, field: &Field, name: &str) -> Option<String> {
     let leads_out = |part: &str| part.trim().is_empty() || part == "." || part == "..";
     let what = if name.len() > MAX_NAME {
