@@ -128,6 +128,8 @@ fn remarks(c: &close::Closed) -> Vec<String> {
     let tees =
         (c.t_junctions > 0).then(|| format!("{} vertices stood on the edge of a neighbor", c.t_junctions));
     let dropped = (c.dropped > 0).then(|| format!("{} faces without area were passed over", c.dropped));
+    let walls =
+        (c.walls > 0).then(|| format!("{} walls inside, a face and its reverse, were taken out", c.walls));
     let touch = (c.touching_edges > 0).then(|| format!("touches itself along {} edges", c.touching_edges));
-    [several, hollow, tees, dropped, touch].into_iter().flatten().collect()
+    [several, hollow, tees, dropped, walls, touch].into_iter().flatten().collect()
 }
