@@ -3,6 +3,7 @@
 //! Promised: closed, outward, no face twice, vertices welded by identity, facets planar and convex; a file that is not
 //! so is refused with all its faults. Not promised: that the surface keeps clear of itself.
 
+mod assemble;
 mod close;
 mod faults;
 mod flat;
@@ -13,6 +14,7 @@ mod soup;
 mod stl;
 mod threemf;
 
+pub use assemble::{MeshAssembly, assemble};
 pub use faults::{MeshFault, MeshFaults, Place};
 pub(crate) use shells::solid_angle;
 
