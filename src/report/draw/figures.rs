@@ -106,16 +106,16 @@ pub fn moving(assembly: &Assembly, motion: &Motion) -> Figure {
     // Twists are drawn to one scale; the fastest point a part's own size away fills a sign.
     let speed = |t: DVec3, w: DVec3| t.length().max(w.length() * size / 2.0);
     let fastest =
-        motion.twists.iter().map(|(_, t)| speed(t.translation, t.rotation)).fold(f64::MIN_POSITIVE, f64::max);
-    for (p, _) in &motion.twists {
+        movers.iter().map(|(_, t)| speed(t.translation, t.rotation)).fold(f64::MIN_POSITIVE, f64::max);
+    for (p, _) in &movers {
         scene = scene.with(*p, Opacity::Ghost { alpha: ONE_GHOST });
     }
-    for (_, t) in &motion.twists {
+    for (_, t) in &movers {
         let length = size * speed(t.translation, t.rotation) / fastest;
         let signs = glyph::motion(t.centre, t.translation, t.rotation, length);
         scene.items.extend(signs.iter().map(|s| Item::sign(s, Colour::srgb(palette::MOTION))));
     }
-    let ids: Vec<&str> = motion.twists.iter().map(|(p, _)| assembly.part(*p).id.as_str()).collect();
+    let ids: Vec<&str> = movers.iter().map(|(p, _)| assembly.part(*p).id.as_str()).collect();
     Figure {
         name: "motion",
         scene,

@@ -25,6 +25,9 @@ pub fn arrow(from: DVec3, to: DVec3, radius: f64) -> Option<Solid> {
 /// An arrow bent about the axis through `centre`: it turns by `angle` radians (by its sign, right-handed about `axis`),
 /// at most once around, on a circle of radius `bow`. `None` where axis, bow, angle or shaft have no size.
 pub fn turning_arrow(centre: DVec3, axis: DVec3, bow: f64, angle: f64, radius: f64) -> Option<Solid> {
+    if !angle.is_finite() {
+        return None;
+    }
     let axis = axis.try_normalize()? * angle.signum();
     let (u, v) = axis.any_orthonormal_pair();
     let angle = angle.abs().min(TAU * 0.9);
