@@ -54,6 +54,9 @@ impl fmt::Display for Fault {
 #[derive(Clone, Debug, Default, PartialEq, Eq, thiserror::Error)]
 pub struct Faults(pub Vec<Fault>);
 
+/// Faults written out; a file of another kind can have one on each of its lines, and nobody reads on after a screen.
+const SHOWN: usize = 40;
+
 impl Faults {
     pub fn sorted(mut faults: Vec<Fault>) -> Faults {
         faults.sort_by(|a, b| (&a.file, a.place, &a.key).cmp(&(&b.file, b.place, &b.key)));
@@ -74,10 +77,13 @@ impl From<Fault> for Faults {
 
 impl fmt::Display for Faults {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        for (at, fault) in self.0.iter().enumerate() {
+        for (at, fault) in self.0.iter().take(SHOWN).enumerate() {
             let gap = if at == 0 { "" } else { "\n\n" };
             write!(f, "{gap}{fault}")?;
         }
-        Ok(())
+        match self.0.len().saturating_sub(SHOWN) {
+            0 => Ok(()),
+            more => write!(f, "\n\n... and {more} more"),
+        }
     }
 }

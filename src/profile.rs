@@ -85,12 +85,23 @@ impl Line {
         self.length[self.length.len() - 1]
     }
 
+    /// Number of the straight stretch that holds the point at length `s`, from 0.
+    pub fn stretch(&self, s: f64) -> usize {
+        self.length.partition_point(|&l| l <= s).clamp(1, self.length.len() - 1) - 1
+    }
+
+    /// Unit vector along a stretch; zero where the stretch has no length.
+    pub fn direction(&self, stretch: usize) -> [f64; 2] {
+        let (p, q) = (self.points[stretch], self.points[stretch + 1]);
+        let length = self.length[stretch + 1] - self.length[stretch];
+        [0, 1].map(|d| if length > 0.0 { (q[d] - p[d]) / length } else { 0.0 })
+    }
+
     /// The point at length `s` from the start.
     pub fn at(&self, s: f64) -> [f64; 2] {
-        let k = self.length.partition_point(|&l| l <= s).clamp(1, self.length.len() - 1);
-        let (l0, l1) = (self.length[k - 1], self.length[k]);
-        let share = if l1 > l0 { (s - l0) / (l1 - l0) } else { 0.0 };
-        [0, 1].map(|d| self.points[k - 1][d] + share * (self.points[k][d] - self.points[k - 1][d]))
+        let k = self.stretch(s);
+        let (d, past) = (self.direction(k), s - self.length[k]);
+        [0, 1].map(|c| self.points[k][c] + past * d[c])
     }
 
     /// Length at which the curve passes u, halfway along a vertical run there.
@@ -104,7 +115,8 @@ impl Line {
         self.length[first - 1] + (u - p[0]) / (q[0] - p[0]) * (self.length[first] - self.length[first - 1])
     }
 
-    fn between(&self, from: f64, to: f64) -> Curve {
+    /// The curve between two lengths, with the bends between them.
+    pub fn between(&self, from: f64, to: f64) -> Curve {
         let inner = self.points.iter().zip(&self.length).filter(|(_, l)| **l > from && **l < to);
         let mut curve = vec![self.at(from)];
         curve.extend(inner.map(|(p, _)| *p));

@@ -1,8 +1,9 @@
 //! Takes centrelines, samples and the two sandwiching planes; gives labelled points on an integer grid.
 //!
 //! Sites are periodic like the draft: one list for each unit square of a period. Symmetric positions are symmetric
-//! exactly, since all are multiples of 2^-20 of a crossing. Not promised: that the points lie on the curve better
-//! than half a grid step (0.5e-6 crossing), nor that the cells approximate the curved ones to any given chord error.
+//! exactly, since all are multiples of 2^-20 of a crossing, and collinear ones collinear. Not promised: that the points
+//! lie on the curve better than a grid step for each site since the last bend (64 sites: 6e-5 crossing), nor that the
+//! cells approximate the curved ones to any given chord error.
 
 use crate::profile::{Line, over_crossing};
 use crate::spec::{Bounds, ProfileSpec};
@@ -152,21 +153,45 @@ fn square(weave: &Weave, profile: &ProfileSpec, x: i32, y: i32) -> Result<Square
     Ok(Square { points, wefts, strands, below })
 }
 
-/// Sites spaced evenly along each half of a crossing's centreline, half a step from its ends: as many as the profile
+/// Sites spaced evenly along each half of a crossing's centreline, from its cut to its middle: as many as the profile
 /// asks for that length of curve, and at least one. By halves, since then a rise is sampled alike wherever it occurs:
 /// cuts fall where the piece is said to end, and ties between strands that are congruent there stay exact.
 fn samples(weave: &Weave, profile: &ProfileSpec, strand: Strand, crossing: i32) -> Vec<[i64; 2]> {
     let line = Line::new(over_crossing(weave, profile, strand, crossing));
     let middle = line.cut(0.5);
-    let mut sites: Vec<_> = spaced(&line, 0.0, middle, profile.samples).collect();
-    sites.extend(spaced(&line, middle, line.total(), profile.samples));
+    let mut far = line.between(middle, line.total());
+    far.reverse();
+    let mut sites = spaced(&line.between(0.0, middle), profile.samples);
+    let back = spaced(&far, profile.samples);
+    sites.extend(back.into_iter().rev());
     sites
 }
 
-fn spaced(line: &Line, from: f64, to: f64, samples: u32) -> impl Iterator<Item = [i64; 2]> {
-    let count = (f64::from(samples) * (to - from)).round().max(1.0);
-    let step = (to - from) / count;
-    (0..count as u32).map(move |k| line.at(from + (f64::from(k) + 0.5) * step).map(grid))
+/// Sites on a curve that starts at a cut, the first half a step from there. On each straight stretch they advance by
+/// one whole grid vector (twice a rounded half step), so that they stay collinear exactly, across the cut too: a
+/// contact between two straight runs keeps its rulings, along which parts may slide. Level and upright stretches are
+/// collinear anyway; there each site is rounded by itself.
+fn spaced(curve: &[[f64; 2]], samples: u32) -> Vec<[i64; 2]> {
+    let line = Line::new(curve.to_vec());
+    let count = (f64::from(samples) * line.total()).round().max(1.0);
+    let step = line.total() / count;
+    let mut sites: Vec<[i64; 2]> = Vec::with_capacity(count as usize);
+    let mut stretch = None;
+    for k in 0..count as u32 {
+        let s = (f64::from(k) + 0.5) * step;
+        let here = line.stretch(s);
+        let direction = line.direction(here);
+        let half = direction.map(|d| grid(d * step / 2.0));
+        let site = match (sites.last(), stretch) {
+            _ if direction.contains(&0.0) => line.at(s).map(grid),
+            (None, _) if here == 0 => [0, 1].map(|d| grid(curve[0][d]) + half[d]),
+            (Some(last), Some(before)) if before == here => [0, 1].map(|d| last[d] + 2 * half[d]),
+            _ => line.at(s).map(grid),
+        };
+        stretch = Some(here);
+        sites.push(site);
+    }
+    sites
 }
 
 /// A square lattice of sites on a plane, as dense as the strands'.

@@ -1,5 +1,6 @@
 //! Takes an assembly, gives contact patches between parts.
 
+pub mod mesh;
 pub mod woven;
 
 use crate::assembly::PartIx;

@@ -14,9 +14,9 @@ use std::collections::{BTreeMap, BTreeSet};
 /// that lead there: 1e5 units of round-off are 2.2e-11.
 pub const ROUND_OFF: f64 = 1e-10;
 
-/// Openings below this share of the largest count as zero when a motion is polished; a wrong guess is found out, since
-/// the polished motion is tested on every row.
-const KEPT: f64 = 1e-6;
+/// Openings below this share of the largest count as zero when a motion is polished: guesses, tried in turn. A wrong
+/// one is found out, since the polished motion is tested on every row.
+const KEPT: [f64; 5] = [1e-6, 1e-5, 1e-7, 1e-4, 1e-8];
 
 #[derive(Clone, Debug)]
 pub enum Verdict {
@@ -104,7 +104,7 @@ pub fn decide(rows: &[Row], unknowns: &Unknowns) -> Verdict {
         let size = chosen.len();
         for sign in [1.0, -1.0] {
             let x: Vec<f64> = motion.iter().map(|v| v * sign).collect();
-            if let Some(motion) = polished(rows, unknowns, &x) {
+            if let Some(motion) = KEPT.iter().find_map(|&kept| polished(rows, unknowns, &x, kept)) {
                 return Verdict::Free(motion);
             }
             chosen.extend(broken(rows, unknowns, &x));
@@ -249,12 +249,12 @@ fn balance(rows: &[Row], unknowns: &Unknowns, mut y: Vec<f64>) -> Balanced {
 }
 
 /// The motion with its nearly unmoved rows brought to exactly zero (to round-off), if it then keeps every row.
-fn polished(rows: &[Row], unknowns: &Unknowns, x: &[f64]) -> Option<Motion> {
+fn polished(rows: &[Row], unknowns: &Unknowns, x: &[f64], kept: f64) -> Option<Motion> {
     let size = largest(x);
     let mut x: Vec<f64> = x.iter().map(|v| v / size).collect();
     let top = rows.iter().map(|r| unknowns.opening(r, &x).abs()).fold(0.0, f64::max);
     let still: Vec<Row> =
-        rows.iter().filter(|r| unknowns.opening(r, &x).abs() <= KEPT * top.max(KEPT)).copied().collect();
+        rows.iter().filter(|r| unknowns.opening(r, &x).abs() <= kept * top.max(kept)).copied().collect();
     if !still.is_empty() {
         let factor = factor(&still, unknowns);
         for _ in 0..3 {

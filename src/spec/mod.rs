@@ -3,6 +3,20 @@
 //! Promised: every number lies in the bounds stated here. Not promised: that files named in it exist or hold meshes,
 //! nor that ids in `held` of a swatch exist; the stages that know tell.
 
+mod json;
+mod meshes;
+mod pieces;
+mod points;
+mod read;
+mod reader;
+mod tree;
+mod units;
+mod woven;
+
+pub use pieces::piece_ids;
+pub use read::{Syntax, parse, read};
+pub use woven::MAX_SITES;
+
 use crate::assembly::Mobility;
 use crate::fault::{Fault, Place};
 use crate::weave::{Strand, Weave};
@@ -31,7 +45,7 @@ impl Spec {
 
 /// Key path, as in `swatch.held[1]` or `piece[0].from`, to its place in the file.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Places(BTreeMap<String, Place>);
+pub struct Places(pub(self) BTreeMap<String, Place>);
 
 impl Places {
     /// The place of the key, or of the nearest key around it that stands in the file.
@@ -83,7 +97,8 @@ pub struct ProfileSpec {
 pub enum Shape {
     /// Width over which a centerline changes side: 0 a square wave, 1 triangular.
     Rise(f64),
-    /// Control points [x, z] of a degree-1 curve over one period, x = 0 where the overs begin.
+    /// Control points [x, z] of a degree-1 curve over one period: a weft's, x = 0 where its overs begin. A warp's is
+    /// the same with z mirrored at `lift / 2`, x = 0 where its unders begin.
     Points(Vec<[f64; 2]>),
 }
 

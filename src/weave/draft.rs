@@ -66,6 +66,15 @@ impl Draft {
         }
     }
 
+    /// The strands of this kind in one period.
+    pub fn strands(&self, kind: Kind) -> impl Iterator<Item = Strand> + use<> {
+        let count = match kind {
+            Kind::Weft => self.wefts,
+            Kind::Warp => self.warps,
+        };
+        (0..count as i32).map(move |index| Strand { kind, index })
+    }
+
     /// One period drawn: a string for each weft, `X` where it passes over, `.` where under.
     pub fn rows(&self) -> Vec<String> {
         let mark = |&over: &bool| if over { 'X' } else { '.' };

@@ -4,13 +4,23 @@
 //! that falls apart is a draft like any other (see [`hangs_together`]).
 
 mod draft;
+mod drawn;
+mod family;
+mod hanging;
+mod ini;
+mod wif;
 
 pub use draft::Draft;
+pub use drawn::{DrawnFault, MAX_DRAFT, parse_drawn};
+pub use family::{Family, Float, Floats, Hand, family, floats, wave};
+pub use hanging::{Hanging, hangs_together};
+pub use wif::{parse_wif, to_wif};
 
 use crate::fault::{Fault, Faults};
+use crate::input;
 use serde::Serialize;
 use std::fmt;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Which way a strand runs: wefts along x (rows of the draft), warps along y (its columns).
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug, Serialize)]
@@ -75,8 +85,39 @@ impl Weave {
         })
     }
 
+    /// Greatest common divisor of c and a + b for `[a,b,c]`. Where it is 1 the weave hangs together by a theorem; where
+    /// it is more the theorem is silent, and only [`hangs_together`] tells.
+    pub fn common_divisor(&self) -> Option<u32> {
+        match self.origin {
+            Origin::Abc { a, b, c } => Some(gcd(a + b, c.unsigned_abs())),
+            _ => None,
+        }
+    }
+
+    /// The weave written `[a,b,c]`, as on the command line; brackets and white space may be left out.
+    pub fn parse_abc(text: &str) -> Result<Weave, Faults> {
+        let inner = text.trim().trim_start_matches('[').trim_end_matches(']');
+        let words: Vec<&str> = inner.split(',').map(str::trim).collect();
+        let numbers = match words[..] {
+            [a, b, c] => a.parse().ok().zip(b.parse().ok()).zip(c.parse().ok()),
+            _ => None,
+        };
+        let ((a, b), c) = numbers.ok_or_else(|| abc_fault(text))?;
+        Weave::abc(a, b, c)
+    }
+
+    /// The weave of a file: WIF where its name ends in `.wif` or its text starts with `[`, else a drawn draft.
+    pub fn read(path: &Path) -> Result<Weave, Faults> {
+        let bytes = input::bytes(path)?;
+        let named = path.extension().is_some_and(|end| end.eq_ignore_ascii_case("wif"));
+        if named || bytes.trim_ascii_start().starts_with(b"[") {
+            return parse_wif(&input::legacy_text(bytes, path)?, path);
+        }
+        parse_drawn(&input::text(bytes, path)?, path)
+    }
+
     /// A weave from a draft; its unit tile is one period of the strand.
-    pub fn drawn(draft: Draft, origin: Origin) -> Weave {
+    pub fn of_draft(draft: Draft, origin: Origin) -> Weave {
         let tile = (draft.warps(), draft.wefts());
         Weave { draft, origin, tile }
     }
@@ -90,4 +131,15 @@ fn run_fault(name: &str, value: u32) -> Fault {
     };
     let what = format!("{name} = {value}, but it must be 1 to {MAX_RUN}");
     Fault { file: String::new(), place: None, key: "abc".into(), what, hint: hint.into() }
+}
+
+fn abc_fault(text: &str) -> Faults {
+    let what = format!("{text:?} is not a weave [a,b,c]");
+    let hint =
+        "three whole numbers: a overs, b unders (each 1 to 64), moved by c from weft to weft; as in [2,2,1]";
+    Fault { file: String::new(), place: None, key: "abc".into(), what, hint: hint.into() }.into()
+}
+
+fn gcd(a: u32, b: u32) -> u32 {
+    if b == 0 { a } else { gcd(b, a % b) }
 }

@@ -1,0 +1,173 @@
+//! Takes a mesh, or two; gives a pair of triangles that cross, and where.
+//!
+//! Exact for the coordinates it is given (adaptive predicates); touching counts as crossing. Not promised: which pair
+//! is found first means anything, beyond being the same for the same mesh.
+
+use crate::bvh::{Bvh, Node};
+use crate::mesh::Mesh;
+use glam::{DVec2, DVec3};
+use robust::{Coord, Coord3D, orient2d, orient3d};
+
+/// Two triangles that cross or touch without sharing that point as a vertex.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Crossing {
+    pub triangles: (u32, u32),
+    pub at: DVec3,
+}
+
+/// Triangles of one mesh that cross one another.
+pub fn within(mesh: &Mesh, tree: &Bvh) -> Vec<Crossing> {
+    let mut found = Vec::new();
+    pairs((mesh, tree), (mesh, tree), &mut |s, t| {
+        if s < t && cross_in_mesh(mesh, s, t) {
+            found.push(Crossing { triangles: (s, t), at: mesh.corners(s as usize).iter().sum::<DVec3>() / 3.0 });
+        }
+    });
+    found.sort_by_key(|c| c.triangles);
+    found
+}
+
+/// Triangles of `a` that cross or touch triangles of `b`.
+pub fn between(a: (&Mesh, &Bvh), b: (&Mesh, &Bvh)) -> Vec<Crossing> {
+    let mut found = Vec::new();
+    pairs(a, b, &mut |s, t| {
+        if disjoint_ids_cross(a.0.corners(s as usize), b.0.corners(t as usize)) {
+            let at = a.0.corners(s as usize).iter().sum::<DVec3>() / 3.0;
+            found.push(Crossing { triangles: (s, t), at });
+        }
+    });
+    found.sort_by_key(|c| c.triangles);
+    found
+}
+
+/// Whether `p` is inside the closed mesh, by its winding number.
+pub fn encloses(mesh: &Mesh, p: DVec3) -> bool {
+    let solid_angle = |t: usize| {
+        let [a, b, c] = mesh.corners(t).map(|v| v - p);
+        let (x, y, z) = (a.length(), b.length(), c.length());
+        let below = x * y * z + a.dot(b) * z + b.dot(c) * x + c.dot(a) * y;
+        2.0 * a.dot(b.cross(c)).atan2(below)
+    };
+    let turns = (0..mesh.triangles.len()).map(solid_angle).sum::<f64>() / (4.0 * std::f64::consts::PI);
+    turns.abs() > 0.5
+}
+
+fn pairs(a: (&Mesh, &Bvh), b: (&Mesh, &Bvh), f: &mut impl FnMut(u32, u32)) {
+    let mut todo = if a.1.nodes.is_empty() || b.1.nodes.is_empty() { vec![] } else { vec![(0, 0)] };
+    while let Some((i, j)) = todo.pop() {
+        if a.1.boxes[i].distance_squared(&b.1.boxes[j]) > 0.0 {
+            continue;
+        }
+        match (a.1.nodes[i], b.1.nodes[j]) {
+            (Node::Branch { left, right }, _) => todo.extend([(left, j), (right, j)]),
+            (_, Node::Branch { left, right }) => todo.extend([(i, left), (i, right)]),
+            (Node::Leaf { first, count }, Node::Leaf { first: g, count: m }) => {
+                for &s in a.1.leaf(first, count) {
+                    b.1.leaf(g, m).iter().for_each(|&t| f(s, t));
+                }
+            }
+        }
+    }
+}
+
+fn cross_in_mesh(mesh: &Mesh, s: u32, t: u32) -> bool {
+    let (p, q) = (mesh.triangles[s as usize], mesh.triangles[t as usize]);
+    let at = |v: u32| mesh.vertices[v as usize];
+    let shared: Vec<u32> = p.iter().copied().filter(|v| q.contains(v)).collect();
+    let rest = |t: [u32; 3]| t.into_iter().filter(|v| !shared.contains(v)).map(at).collect::<Vec<_>>();
+    match shared[..] {
+        [] => disjoint_ids_cross(p.map(at), q.map(at)),
+        [v] => fans_cross(at(v), &rest(p), &rest(q)),
+        [u, v] => folded(at(u), at(v), rest(p)[0], rest(q)[0]),
+        _ => true,
+    }
+}
+
+fn disjoint_ids_cross(p: [DVec3; 3], q: [DVec3; 3]) -> bool {
+    (0..3).any(|k| segment_meets([p[k], p[(k + 1) % 3]], q) || segment_meets([q[k], q[(k + 1) % 3]], p))
+}
+
+/// Triangles that share a vertex cross when the far edge of one meets the other, or one lies in the other.
+fn fans_cross(v: DVec3, p: &[DVec3], q: &[DVec3]) -> bool {
+    let (s, t) = ([v, p[0], p[1]], [v, q[0], q[1]]);
+    segment_meets([p[0], p[1]], t) || segment_meets([q[0], q[1]], s)
+}
+
+/// Triangles on both sides of an edge overlap when they are coplanar and on the same side of it.
+fn folded(u: DVec3, v: DVec3, a: DVec3, b: DVec3) -> bool {
+    side(u, v, a, b) == 0.0 && {
+        let drop = dominant(u, v, a);
+        side2(drop, u, v, a) * side2(drop, u, v, b) > 0.0
+    }
+}
+
+/// Whether a closed segment meets a closed triangle.
+fn segment_meets([p, q]: [DVec3; 2], t: [DVec3; 3]) -> bool {
+    let [a, b, c] = t;
+    let (sp, sq) = (side(a, b, c, p), side(a, b, c, q));
+    if sp == 0.0 && sq == 0.0 {
+        return segment_meets_flat([p, q], t);
+    }
+    if sp * sq > 0.0 {
+        return false;
+    }
+    let around = [side(p, q, a, b), side(p, q, b, c), side(p, q, c, a)];
+    around.iter().all(|s| *s >= 0.0) || around.iter().all(|s| *s <= 0.0)
+}
+
+/// The same in the triangle's own plane.
+fn segment_meets_flat([p, q]: [DVec3; 2], [a, b, c]: [DVec3; 3]) -> bool {
+    let drop = dominant(a, b, c);
+    let inside = |x: DVec3| {
+        let s = [side2(drop, a, b, x), side2(drop, b, c, x), side2(drop, c, a, x)];
+        s.iter().all(|s| *s >= 0.0) || s.iter().all(|s| *s <= 0.0)
+    };
+    inside(p) || inside(q) || [[a, b], [b, c], [c, a]].iter().any(|&[x, y]| segments_meet_flat(drop, [p, q], [x, y]))
+}
+
+fn segments_meet_flat(drop: usize, [p, q]: [DVec3; 2], [x, y]: [DVec3; 2]) -> bool {
+    let apart = |a: f64, b: f64| a * b > 0.0;
+    let (px, py) = (side2(drop, p, q, x), side2(drop, p, q, y));
+    let (xp, xq) = (side2(drop, x, y, p), side2(drop, x, y, q));
+    if px == 0.0 && py == 0.0 {
+        let (lo, hi) = (p.min(q), p.max(q));
+        let (lo2, hi2) = (x.min(y), x.max(y));
+        return (0..3).filter(|&k| k != drop).all(|k| lo[k] <= hi2[k] && lo2[k] <= hi[k]);
+    }
+    !apart(px, py) && !apart(xp, xq)
+}
+
+/// Sign of the volume of `a b c d`: which side of the plane `a b c` has `d`. Exact sign.
+fn side(a: DVec3, b: DVec3, c: DVec3, d: DVec3) -> f64 {
+    let [a, b, c, d] = [a, b, c, d].map(|v| Coord3D { x: v.x, y: v.y, z: v.z });
+    orient3d(a, b, c, d).signum_or_zero()
+}
+
+fn side2(drop: usize, a: DVec3, b: DVec3, c: DVec3) -> f64 {
+    let [a, b, c] = [a, b, c].map(|v| flat(drop, v)).map(|v| Coord { x: v.x, y: v.y });
+    orient2d(a, b, c).signum_or_zero()
+}
+
+fn flat(drop: usize, v: DVec3) -> DVec2 {
+    match drop {
+        0 => DVec2::new(v.y, v.z),
+        1 => DVec2::new(v.z, v.x),
+        _ => DVec2::new(v.x, v.y),
+    }
+}
+
+/// The axis along which the triangle may be flattened without becoming a line.
+fn dominant(a: DVec3, b: DVec3, c: DVec3) -> usize {
+    (b - a).cross(c - a).abs().max_position()
+}
+
+trait SignumOrZero {
+    fn signum_or_zero(self) -> f64;
+}
+
+impl SignumOrZero for f64 {
+    /// -1, 0 or 1, so that products of signs can not underflow.
+    fn signum_or_zero(self) -> f64 {
+        if self == 0.0 { 0.0 } else { self.signum() }
+    }
+}

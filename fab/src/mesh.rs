@@ -1,0 +1,143 @@
+//! Takes triangles over shared vertices; gives volume, area, bounds, and whether they close.
+//!
+//! Not promised: that the surface does not cross itself (see `cross`).
+
+use glam::DVec3;
+use std::collections::BTreeMap;
+
+/// An indexed triangle mesh, counter-clockwise from outside, in mm.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Mesh {
+    pub vertices: Vec<DVec3>,
+    pub triangles: Vec<[u32; 3]>,
+}
+
+/// Whether each edge lies between exactly two opposite triangles.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Closure {
+    Closed,
+    /// The number of edges that do not, and the start of one of them.
+    Open {
+        edges: usize,
+        at: DVec3,
+    },
+}
+
+/// Counts that tell one closed surface from another.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Topology {
+    /// Connected pieces of surface.
+    pub bodies: usize,
+    /// Sum of the handles of all bodies; negative where a vertex pinches two sheets together.
+    pub genus: i64,
+}
+
+impl Mesh {
+    pub fn corners(&self, t: usize) -> [DVec3; 3] {
+        self.triangles[t].map(|v| self.vertices[v as usize])
+    }
+
+    /// Signed volume in mm3; positive when the triangles face outward. Taken about the middle of the bounding box,
+    /// so that a part far from the origin loses no digits.
+    pub fn volume(&self) -> f64 {
+        let (lo, hi) = self.bounds();
+        let o = (lo + hi) / 2.0;
+        let six = |t| {
+            let [a, b, c] = self.corners(t).map(|p| p - o);
+            a.dot(b.cross(c))
+        };
+        (0..self.triangles.len()).map(six).sum::<f64>() / 6.0
+    }
+
+    /// Area in mm2.
+    pub fn area(&self) -> f64 {
+        (0..self.triangles.len()).map(|t| area(self.corners(t))).sum()
+    }
+
+    pub fn bounds(&self) -> (DVec3, DVec3) {
+        let start = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+        self.vertices.iter().fold(start, |(lo, hi), v| (lo.min(*v), hi.max(*v)))
+    }
+
+    pub fn closure(&self) -> Closure {
+        let mut uses: BTreeMap<(u32, u32), (u32, u32)> = BTreeMap::new();
+        for t in &self.triangles {
+            for k in 0..3 {
+                let (a, b) = (t[k], t[(k + 1) % 3]);
+                let entry = uses.entry((a.min(b), a.max(b))).or_default();
+                if a < b { entry.0 += 1 } else { entry.1 += 1 }
+            }
+        }
+        let open: Vec<_> = uses.iter().filter(|(_, n)| **n != (1, 1)).map(|(e, _)| e.0).collect();
+        match open.first() {
+            None => Closure::Closed,
+            Some(&v) => Closure::Open { edges: open.len(), at: self.vertices[v as usize] },
+        }
+    }
+
+    /// Bodies and genus of a closed mesh (V - E + F = 2 bodies - 2 genus, with E = 3F / 2).
+    pub fn topology(&self) -> Topology {
+        let mut root: Vec<usize> = (0..self.vertices.len()).collect();
+        for t in &self.triangles {
+            let a = find(&mut root, t[0] as usize);
+            for v in &t[1..] {
+                let b = find(&mut root, *v as usize);
+                root[b] = a;
+            }
+        }
+        let mut used = vec![false; root.len()];
+        self.triangles.iter().flatten().for_each(|&v| used[v as usize] = true);
+        let bodies = (0..root.len()).filter(|&v| used[v] && find(&mut root, v) == v).count();
+        let (v, f) = (used.iter().filter(|u| **u).count() as i64, self.triangles.len() as i64);
+        Topology { bodies, genus: bodies as i64 - (v - f / 2) / 2 }
+    }
+
+    /// The same mesh with every vertex moved.
+    pub fn map(&self, f: impl Fn(DVec3) -> DVec3) -> Mesh {
+        Mesh { vertices: self.vertices.iter().map(|&v| f(v)).collect(), triangles: self.triangles.clone() }
+    }
+}
+
+/// Area of a triangle in mm2.
+pub fn area([a, b, c]: [DVec3; 3]) -> f64 {
+    (b - a).cross(c - a).length() / 2.0
+}
+
+fn find(root: &mut [usize], mut v: usize) -> usize {
+    while root[v] != v {
+        root[v] = root[root[v]];
+        v = root[v];
+    }
+    v
+}
+
+#[cfg(test)]
+pub(crate) mod tests {
+    use super::*;
+
+    pub fn cuboid(lo: DVec3, hi: DVec3) -> Mesh {
+        let corner = |k: usize| {
+            DVec3::from_array(std::array::from_fn(|a| if k >> a & 1 == 1 { hi[a] } else { lo[a] }))
+        };
+        let quads = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+        Mesh {
+            vertices: (0..8).map(corner).collect(),
+            triangles: quads.iter().flat_map(|q| [[q[0], q[1], q[2]], [q[0], q[2], q[3]]]).collect(),
+        }
+    }
+
+    #[test]
+    fn a_box_is_closed_has_its_volume_and_one_body() {
+        let m = cuboid(DVec3::splat(1e3), DVec3::splat(1e3) + DVec3::new(1.0, 2.0, 3.0));
+        assert_eq!(m.closure(), Closure::Closed);
+        assert_eq!(m.topology(), Topology { bodies: 1, genus: 0 });
+        assert!((m.volume() - 6.0).abs() < 1e-9 && (m.area() - 22.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn a_box_that_lacks_a_triangle_is_open() {
+        let mut m = cuboid(DVec3::ZERO, DVec3::ONE);
+        m.triangles.pop();
+        assert!(matches!(m.closure(), Closure::Open { edges: 3, .. }));
+    }
+}

@@ -1,0 +1,116 @@
+//! Takes bodies in place; pushes corners apart wherever two bodies are nearer than the fit, until none are.
+//!
+//! The move of `body` leaves the fit between facets that share a patch. It can not know of parts that meet only in an
+//! edge or a corner, of facets that come near one another across a narrow third, or of what a collapse dropped; here
+//! the distances themselves say so. Not complete: it stops after a fixed number of rounds, and the gap that is measured
+//! on the files decides whether it was enough.
+
+use super::Aim;
+use super::body::Body;
+use super::least::HalfSpace;
+use super::settle::{Settled, settle};
+use crate::bvh::{Aabb, Bvh};
+use crate::mesh::Mesh;
+use crate::near::{Close, closer_than};
+use glam::DVec3;
+use rayon::prelude::*;
+use std::collections::BTreeMap;
+
+/// A round mends what the last one measured; what is left shrinks to second order, so few are needed. Twenty bound the
+/// time where bodies can not be parted at all.
+const ROUNDS: usize = 20;
+
+/// How far one corner has to go back, and in which direction.
+#[derive(Clone, Copy)]
+struct Push {
+    outward: DVec3,
+    by: f64,
+}
+
+struct Surface {
+    mesh: Mesh,
+    corner_of: Vec<u32>,
+    tree: Bvh,
+}
+
+/// Parts bodies that are nearer than `aim.fit` to twice `aim.depth`. Gives, for each body, what was done to it, or `None` where it
+/// was left as it was.
+pub fn relieve(bodies: &mut [Body], aim: &Aim) -> Vec<Option<Settled>> {
+    let mut done: Vec<Option<Settled>> = vec![None; bodies.len()];
+    let mut surfaces: Vec<Surface> = bodies.par_iter().map(surface).collect();
+    for _ in 0..ROUNDS {
+        let pushes = all_pushes(&surfaces, aim);
+        if pushes.iter().all(BTreeMap::is_empty) {
+            break;
+        }
+        bodies.par_iter_mut().zip(&mut surfaces).zip(&mut done).zip(&pushes).for_each(|(((b, s), d), pushes)| {
+            if !pushes.is_empty() {
+                *d = Some(apply(b, pushes, aim.thinnest, d.take().unwrap_or_default()));
+                *s = surface(b);
+            }
+        });
+    }
+    done
+}
+
+fn surface(body: &Body) -> Surface {
+    let (mesh, corner_of) = body.mesh();
+    let tree = Bvh::new(&mesh);
+    Surface { mesh, corner_of, tree }
+}
+
+fn apply(body: &mut Body, pushes: &BTreeMap<u32, Push>, thinnest: f64, before: Settled) -> Settled {
+    for (&c, p) in pushes {
+        let offset = p.outward.dot(body.corners[c as usize].at) - p.by;
+        body.push(c, HalfSpace { normal: p.outward, offset });
+    }
+    let now = settle(body, thinnest);
+    Settled { collapses: before.collapses + now.collapses, unsettled: now.unsettled }
+}
+
+/// For each body, the farthest push that each of its corners needs.
+fn all_pushes(surfaces: &[Surface], aim: &Aim) -> Vec<BTreeMap<u32, Push>> {
+    let boxes: Vec<Aabb> = surfaces.iter().map(|s| Aabb::of(s.mesh.vertices.iter().copied())).collect();
+    let near = |i: usize, j: usize| boxes[i].distance_squared(&boxes[j]) < aim.fit * aim.fit;
+    let pairs: Vec<(usize, usize)> =
+        (0..surfaces.len()).flat_map(|j| (0..j).filter(move |&i| near(i, j)).map(move |i| (i, j))).collect();
+    let close: Vec<Vec<Close>> = pairs
+        .par_iter()
+        .map(|&(i, j)| {
+            let [a, b] = [i, j].map(|k| (&surfaces[k].mesh, &surfaces[k].tree));
+            closer_than(a, b, aim.fit)
+        })
+        .collect();
+    let mut pushes = vec![BTreeMap::new(); surfaces.len()];
+    for (&(i, j), close) in pairs.iter().zip(&close) {
+        for c in close {
+            let lack = aim.depth - c.near.distance / 2.0;
+            let Some(towards_b) = (c.near.b - c.near.a).try_normalize() else { continue };
+            share(&surfaces[i], c.triangles.0, c.near.a, Push { outward: towards_b, by: lack }, &mut pushes[i]);
+            share(&surfaces[j], c.triangles.1, c.near.b, Push { outward: -towards_b, by: lack }, &mut pushes[j]);
+        }
+    }
+    pushes
+}
+
+/// Spreads a push at a point of a triangle over its corners, so that the point goes back by just that much.
+fn share(s: &Surface, triangle: u32, at: DVec3, push: Push, pushes: &mut BTreeMap<u32, Push>) {
+    let weights = weights(s.mesh.corners(triangle as usize), at);
+    let square = weights.length_squared();
+    for (k, &v) in s.mesh.triangles[triangle as usize].iter().enumerate() {
+        let by = push.by * weights[k] / square;
+        let old = pushes.get(&s.corner_of[v as usize]).map_or(0.0, |p| p.by);
+        if by > old {
+            pushes.insert(s.corner_of[v as usize], Push { outward: push.outward, by });
+        }
+    }
+}
+
+/// Barycentric weights of a point of a triangle, none negative, sum 1.
+fn weights([a, b, c]: [DVec3; 3], x: DVec3) -> DVec3 {
+    let n = (b - a).cross(c - a);
+    let part = |p: DVec3, q: DVec3| ((p - x).cross(q - x).dot(n)).max(0.0);
+    let w = DVec3::new(part(b, c), part(c, a), part(a, b));
+    let sum = w.element_sum();
+    if sum > 0.0 { w / sum } else { DVec3::splat(1.0 / 3.0) }
+}
