@@ -164,7 +164,10 @@ impl Job {
     fn part_fault(&self, p: usize) -> Option<Fault> {
         let part = &self.parts[p];
         let m = part.pose.matrix3;
-        let rigid = (m * m.transpose() - glam::DMat3::IDENTITY).to_cols_array().iter().all(|x| x.abs() < UNIT_ROUND_OFF);
+        let rigid = (m * m.transpose() - glam::DMat3::IDENTITY)
+            .to_cols_array()
+            .iter()
+            .all(|x| x.abs() < UNIT_ROUND_OFF);
         let what = match self.shapes.get(part.shape) {
             None => format!("names shape {} of {}", part.shape, self.shapes.len()),
             Some(s) if s.facets.len() != part.roles.len() => {

@@ -3,6 +3,7 @@
 //! Not promised: any finding of its own. Words and numbers are printed as given; what a caller leaves out is shown as
 //! not run, never as passed.
 
+pub mod answer;
 pub mod content;
 pub mod draw;
 pub mod file;
