@@ -89,6 +89,26 @@ impl Shape {
         self.vertices.iter().fold(start, |(lo, hi), v| (lo.min(*v), hi.max(*v)))
     }
 
+    /// Signed volume in mm3; positive when the facets face outward.
+    pub fn volume(&self) -> f64 {
+        let (lo, hi) = self.bounds();
+        let (o, point) = ((lo + hi) / 2.0, |c: u32| self.vertices[c as usize]);
+        let cone = |f: &Facet| {
+            let from = point(f.corners[0]);
+            let fan = f.corners[1..].windows(2).map(|w| (from - o).dot((point(w[0]) - o).cross(point(w[1]) - o)));
+            fan.sum::<f64>() / 6.0
+        };
+        self.facets.iter().map(cone).sum()
+    }
+
+    /// Area of a facet in mm2.
+    pub fn facet_area(&self, f: usize) -> f64 {
+        let Facet { corners, normal } = &self.facets[f];
+        let point = |c: u32| self.vertices[c as usize];
+        let from = point(corners[0]);
+        corners[1..].windows(2).map(|w| (point(w[0]) - from).cross(point(w[1]) - from)).sum::<DVec3>().dot(*normal) / 2.0
+    }
+
     fn faults(&self, at: &str) -> Vec<Fault> {
         let fault = |what: String| Fault { place: at.to_string(), what };
         if self.facets.len() < 4 {
@@ -100,6 +120,9 @@ impl Shape {
         let mut faults: Vec<Fault> = (0..self.facets.len()).filter_map(|f| self.facet_fault(f, at)).collect();
         if faults.is_empty() {
             faults.extend(self.open_edge().map(fault));
+        }
+        if faults.is_empty() && !(self.volume() > 0.0) {
+            faults.push(fault("is inside out: its volume is not positive".into()));
         }
         faults
     }
