@@ -7,5 +7,17 @@
 //! ```
 
 pub mod assembly;
+pub mod blocking;
 pub mod contact;
+pub mod fault;
+pub mod locking;
+pub mod profile;
+pub mod sequence;
+pub mod report;
+pub mod sites;
+pub mod input;
 pub mod solid;
+pub mod spec;
+pub mod tile;
+pub mod verify;
+pub mod weave;

@@ -2,6 +2,10 @@
 //!
 //! Promised: part ids are unique and in the order of the file. Not promised: that parts touch, or that a swatch locks.
 
+pub mod layout;
+pub mod mesh;
+pub mod woven;
+
 use crate::solid::{Cell, Solid};
 use glam::{DAffine3, DVec3};
 

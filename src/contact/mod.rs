@@ -1,5 +1,8 @@
 //! Takes an assembly, gives contact patches between parts.
 
+pub mod mesh;
+pub mod woven;
+
 use crate::assembly::PartIx;
 use glam::DVec3;
 

@@ -1,0 +1,133 @@
+//! Takes mesh files (STL, OBJ, 3MF), gives one closed solid for each.
+//!
+//! Promised: closed, outward, no face twice, vertices welded by identity, facets planar and convex; a file that is not
+//! so is refused with all its faults. Not promised: that the surface keeps clear of itself.
+
+mod close;
+mod faults;
+mod flat;
+mod obj;
+mod polygon;
+mod shells;
+mod soup;
+mod stl;
+mod threemf;
+
+pub use faults::{MeshFault, MeshFaults, Place};
+pub(crate) use shells::solid_angle;
+
+use crate::solid::{Facet, Solid};
+use faults::{Found, found};
+use soup::Soup;
+use std::path::Path;
+
+/// What a mesh file holds.
+#[derive(Clone, Debug)]
+pub struct Mesh {
+    /// One part, in model units; its convex cells are filled where they are known.
+    pub solid: Solid,
+    /// Closed outward shells that share no edge; they count as one rigid part.
+    pub bodies: usize,
+    /// Hollows inside.
+    pub voids: usize,
+    /// Half a unit in the last place of the file's coordinates, in model units.
+    pub resolution: f64,
+    /// What was taken in good faith and may not be meant, in words.
+    pub remarks: Vec<String>,
+}
+
+/// How a mesh file is to be read.
+#[derive(Clone, Copy, Debug)]
+pub struct Reading {
+    /// Only 3MF says its unit; STL and OBJ are taken as model units.
+    pub mm_per_unit: f64,
+    /// The user's contact tolerance, in model units: nothing finer decides what is flat.
+    pub tolerance: f64,
+}
+
+/// Reads one file as one part.
+///
+/// # Errors
+/// All faults of the file, each with its place.
+pub fn read_mesh(path: &Path, reading: Reading) -> Result<Mesh, MeshFaults> {
+    let own = |faults: Vec<Found>| {
+        MeshFaults(
+            faults
+                .into_iter()
+                .map(|f| MeshFault {
+                    file: path.to_owned(),
+                    place: f.place,
+                    what: f.what,
+                    hint: f.hint.to_owned(),
+                })
+                .collect(),
+        )
+    };
+    let hint = "the path is taken relative to the file that names it";
+    let bytes = std::fs::read(path).map_err(|e| own(vec![found(Place::File, e.to_string(), hint)]))?;
+    let kind = path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase()).unwrap_or_default();
+    let soup = match kind.as_str() {
+        "obj" => obj::read(&String::from_utf8_lossy(&bytes)),
+        "stl" => stl::read(&bytes),
+        "3mf" => threemf::read(&bytes, reading.mm_per_unit),
+        _ => Err(vec![found(
+            Place::File,
+            format!("no mesh format is called `{kind}`"),
+            "use .stl, .obj or .3mf",
+        )]),
+    };
+    soup.and_then(|s| solid(&s, reading)).map_err(own)
+}
+
+fn solid(soup: &Soup, reading: Reading) -> Result<Mesh, Vec<Found>> {
+    let width = flat::width(soup.resolution, reading.tolerance);
+    let closed = close::close(soup, width)?;
+    let mut facets = Vec::new();
+    let mut faults = Vec::new();
+    for ring in &closed.rings {
+        match polygon::facets(ring, &soup.vertices, width) {
+            Some(f) => facets.extend(f),
+            None => {
+                let at = |k: usize| soup.vertices[ring[k] as usize];
+                faults.push(found(
+                    Place::Edge(at(0), at(1)),
+                    "the face beside it crosses itself",
+                    "split it into triangles",
+                ));
+            }
+        }
+    }
+    if !faults.is_empty() {
+        return Err(faults);
+    }
+    let normals = flat::normals(&facets, &soup.vertices, width, reading.tolerance);
+    let facets = facets.into_iter().zip(normals).map(|(corners, normal)| Facet { corners, normal }).collect();
+    let solid = used_only(Solid { vertices: soup.vertices.clone(), facets, cells: vec![] });
+    let remarks = remarks(&closed);
+    Ok(Mesh { solid, bodies: closed.bodies, voids: closed.voids, resolution: soup.resolution, remarks })
+}
+
+/// The solid without vertices that no facet uses.
+fn used_only(solid: Solid) -> Solid {
+    let mut new = vec![u32::MAX; solid.vertices.len()];
+    let mut vertices = Vec::new();
+    let mut facets = solid.facets;
+    for i in facets.iter_mut().flat_map(|f| f.corners.iter_mut()) {
+        if new[*i as usize] == u32::MAX {
+            new[*i as usize] = vertices.len() as u32;
+            vertices.push(solid.vertices[*i as usize]);
+        }
+        *i = new[*i as usize];
+    }
+    Solid { vertices, facets, cells: solid.cells }
+}
+
+fn remarks(c: &close::Closed) -> Vec<String> {
+    let several = (c.bodies > 1).then(|| format!("{} bodies, taken as one rigid part", c.bodies));
+    let hollow = (c.voids > 0).then(|| format!("{} hollows inside", c.voids));
+    let tees =
+        (c.t_junctions > 0).then(|| format!("{} vertices stood on the edge of a neighbor", c.t_junctions));
+    let dropped = (c.dropped > 0).then(|| format!("{} faces without area were passed over", c.dropped));
+    let touch = (c.touching_edges > 0).then(|| format!("touches itself along {} edges", c.touching_edges));
+    [several, hollow, tees, dropped, touch].into_iter().flatten().collect()
+}

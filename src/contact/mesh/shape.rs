@@ -1,0 +1,90 @@
+//! Takes a part in place, gives its facets about a common origin with a search tree over them.
+//!
+//! Not promised: that facets are planar beyond what their solid promises.
+
+use super::local::{Features, Form, Local};
+use crate::assembly::{Assembly, PartIx};
+use glam::DVec3;
+use parry3d_f64::bounding_volume::{Aabb, BoundingVolume};
+use parry3d_f64::partitioning::{Bvh, BvhBuildStrategy};
+
+/// A facet in place: corners and outward unit normal.
+pub(super) struct Face {
+    pub corners: Vec<u32>,
+    pub normal: DVec3,
+    /// The face's own form: flat, with its normal.
+    pub local: Local,
+}
+
+/// A part in place; `points` are relative to the common origin so that nothing cancels far from the world's.
+pub(super) struct Shape {
+    pub part: PartIx,
+    pub points: Vec<DVec3>,
+    pub faces: Vec<Face>,
+    pub bounds: Aabb,
+    pub features: Features,
+    tree: Bvh,
+}
+
+impl Shape {
+    pub fn new(assembly: &Assembly, part: PartIx, origin: DVec3) -> Shape {
+        let pose = assembly.part(part).pose;
+        let solid = assembly.solid(part);
+        let points: Vec<DVec3> = assembly.vertices(part).map(|p| p - origin).collect();
+        let place = |f: &crate::solid::Facet| {
+            let normal = pose.transform_vector3(f.normal).normalize();
+            Face {
+                corners: f.corners.clone(),
+                normal,
+                local: Local { form: Form::Flat, normals: vec![normal] },
+            }
+        };
+        let faces: Vec<Face> = solid.facets.iter().map(place).collect();
+        let boxes: Vec<Aabb> =
+            faces.iter().map(|f| around(f.corners.iter().map(|&i| points[i as usize]))).collect();
+        let tree = Bvh::from_leaves(BvhBuildStrategy::Binned, &boxes);
+        let bounds = around(points.iter().copied());
+        let features = Features::of(&points, &faces);
+        Shape { part, points, faces, bounds, features, tree }
+    }
+
+    pub fn at(&self, i: u32) -> DVec3 {
+        self.points[i as usize]
+    }
+
+    pub fn ring(&self, f: usize) -> impl ExactSizeIterator<Item = DVec3> + Clone + '_ {
+        self.faces[f].corners.iter().map(|&i| self.at(i))
+    }
+
+    pub fn face_bounds(&self, f: usize) -> Aabb {
+        around(self.ring(f))
+    }
+
+    /// Faces whose boxes come within `reach` of the given box, in order.
+    pub fn faces_near(&self, bounds: &Aabb, reach: f64) -> Vec<usize> {
+        let wide = bounds.loosened(reach);
+        let mut found: Vec<usize> = self.tree.intersect_aabb(&wide).map(|k| k as usize).collect();
+        found.sort_unstable();
+        found
+    }
+
+    pub fn triangles(&self) -> impl Iterator<Item = [DVec3; 3]> + '_ {
+        self.faces.iter().flat_map(|f| {
+            (1..f.corners.len() - 1)
+                .map(|k| [f.corners[0], f.corners[k], f.corners[k + 1]].map(|i| self.at(i)))
+        })
+    }
+}
+
+impl Shape {
+    /// Each edge once, as its two ends.
+    pub fn edges(&self) -> impl Iterator<Item = (DVec3, DVec3)> + '_ {
+        self.features.edges.iter().map(|e| (self.at(e.ends[0]), self.at(e.ends[1])))
+    }
+}
+
+/// The smallest box around points; an inverted one around none.
+pub(super) fn around(points: impl Iterator<Item = DVec3>) -> Aabb {
+    let (lo, hi) = points.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(lo, hi), p| (lo.min(p), hi.max(p)));
+    Aabb::new(lo, hi)
+}

@@ -1,0 +1,278 @@
+//! Takes two shapes and the faces on which they lie flat, gives the contacts that are smaller than a face: edges along
+//! faces and grooves, vertices, crossing edges.
+//!
+//! A row is given where first-order motion must obey it: a point of one part against a flat or reflex place of the other
+//! (its free space is convex there: one row for each face), or two convex corners with one separating plane. All else
+//! gets no row and is listed. Not promised: at a saddle that a given patch touches, nothing more is said.
+
+use super::cone::{Separation, separation};
+use super::flush::Flush;
+use super::local::{Form, Local, locate};
+use super::overlap::segment_distance;
+use super::polygon;
+use super::shape::{Shape, around};
+use glam::{DVec2, DVec3};
+use std::collections::BTreeMap;
+
+/// A contact of one corner or two, with its unit normal from the first shape to the second.
+#[derive(Clone, Debug)]
+pub(super) struct Touch {
+    pub normal: DVec3,
+    pub corners: Vec<DVec3>,
+}
+
+/// Why a contact got no row.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Why {
+    /// Many planes separate the two convex corners (parallel edges, two vertices, a vertex on an edge).
+    ManyNormals,
+    /// No plane separates them within round-off, although they reach into each other by less than the tolerance.
+    NoNormal,
+    /// One of them is a saddle, or a place where the part touches itself.
+    Saddle,
+    /// More faces meet there than are looked at.
+    ManyFaces,
+}
+
+/// A contact that got no row: one point, or the two ends of a stretch.
+#[derive(Clone, Debug)]
+pub(super) struct Passed {
+    pub corners: Vec<DVec3>,
+    pub why: Why,
+}
+
+#[derive(Default)]
+pub(super) struct Touches {
+    pub rows: Vec<Touch>,
+    pub passed: Vec<Passed>,
+}
+
+/// All contacts smaller than a face that the given faces do not say already.
+pub(super) fn touches(a: &Shape, b: &Shape, faces: &[Flush], tolerance: f64) -> Touches {
+    let mut all = Touches::default();
+    let places = along_faces(a, b, tolerance)
+        .into_iter()
+        .chain(along_faces(b, a, tolerance).into_iter().map(Place::turned))
+        .chain(edge_pairs(a, b, tolerance, Pairing::Along))
+        .chain(vertices(a, b, tolerance))
+        .chain(vertices(b, a, tolerance).into_iter().map(Place::turned))
+        .chain(edge_pairs(a, b, tolerance, Pairing::Across));
+    for place in places {
+        add(&mut all, &place, faces, tolerance);
+    }
+    all
+}
+
+/// Where the shapes touch, and what each looks like there.
+struct Place<'a> {
+    corners: Vec<DVec3>,
+    a: &'a Local,
+    b: &'a Local,
+}
+
+impl Place<'_> {
+    fn turned(self) -> Self {
+        Place { a: self.b, b: self.a, ..self }
+    }
+}
+
+fn add(all: &mut Touches, place: &Place, faces: &[Flush], tolerance: f64) {
+    let reach = 2.0 * tolerance;
+    let covered = |on: &dyn Fn(DVec3) -> bool| place.corners.iter().all(|&p| on(p));
+    let by_face = covered(&|p| faces.iter().any(|f| on_polygon(f, p, reach)));
+    let by_row = covered(&|p| all.rows.iter().any(|t| on_stretch(&t.corners, p, reach)));
+    match verdict(place) {
+        // Two convex corners on a common face are kept apart by it: their one plane is the face's own.
+        Ok(_) if by_face && place.a.form == Form::Convex && place.b.form == Form::Convex => {}
+        Ok(normals) => {
+            let says = |n: DVec3, p: DVec3| known(all, faces, n, p, reach);
+            let new = normals.into_iter().filter(|&n| !covered(&|p| says(n, p)));
+            let new: Vec<Touch> =
+                new.map(|normal| Touch { normal, corners: place.corners.clone() }).collect();
+            all.rows.extend(new);
+        }
+        Err(_) if by_face || by_row => {}
+        Err(why) => {
+            let listed = |q: &Passed| covered(&|p| on_stretch(&q.corners, p, reach));
+            if !all.passed.iter().any(listed) {
+                all.passed.push(Passed { corners: place.corners.clone(), why });
+            }
+        }
+    }
+}
+
+/// Whether a row with this normal is there at p already. A face's normal is the mean of two that differ by its tilt.
+fn known(all: &Touches, faces: &[Flush], n: DVec3, p: DVec3, reach: f64) -> bool {
+    faces.iter().any(|f| angle(f.normal, n) <= f.tilt + SAME && on_polygon(f, p, reach))
+        || all.rows.iter().any(|t| angle(t.normal, n) <= SAME && on_stretch(&t.corners, p, reach))
+}
+
+/// Rows whose normals differ by less (radians) say the same: round-off of unit normals.
+const SAME: f64 = 1e-9;
+
+fn angle(m: DVec3, n: DVec3) -> f64 {
+    m.cross(n).length().atan2(m.dot(n))
+}
+
+/// The normals, from the first to the second, of the rows that hold at a place.
+fn verdict(place: &Place) -> Result<Vec<DVec3>, Why> {
+    let yields = |l: &Local| matches!(l.form, Form::Flat | Form::Reflex);
+    let own = place.a.normals.iter().copied().filter(|_| yields(place.a));
+    let other = place.b.normals.iter().map(|n| -n).filter(|_| yields(place.b));
+    let rows: Vec<DVec3> = own.chain(other).collect();
+    if !rows.is_empty() {
+        return Ok(rows);
+    }
+    if place.a.form == Form::Saddle || place.b.form == Form::Saddle {
+        return Err(Why::Saddle);
+    }
+    match separation(&place.a.normals, &place.b.normals) {
+        Separation::One(n) => Ok(vec![n]),
+        Separation::Many => Err(Why::ManyNormals),
+        Separation::None => Err(Why::NoNormal),
+        Separation::Undecided => Err(Why::ManyFaces),
+    }
+}
+
+fn on_polygon(f: &Flush, p: DVec3, reach: f64) -> bool {
+    let (u, v) = f.normal.any_orthonormal_pair();
+    let flat = |q: DVec3| DVec2::new((q - p).dot(u), (q - p).dot(v));
+    let ring: Vec<DVec2> = f.corners.iter().map(|&q| flat(q)).collect();
+    (f.corners[0] - p).dot(f.normal).abs() <= reach && polygon::distance(&ring, DVec2::ZERO) <= reach
+}
+
+fn on_stretch(ends: &[DVec3], p: DVec3, reach: f64) -> bool {
+    segment_distance(ends[0], ends[ends.len() - 1], p) <= reach
+}
+
+/// Vertices of a on the surface of b.
+fn vertices<'a>(a: &'a Shape, b: &'a Shape, tolerance: f64) -> Vec<Place<'a>> {
+    let near = b.bounds;
+    let all = a.features.vertices.iter().zip(&a.points).filter_map(|(l, &p)| l.as_ref().map(|l| (l, p)));
+    let cornered = all.filter(|(l, _)| l.form != Form::Flat);
+    let inside = cornered
+        .filter(|(_, p)| (near.mins - tolerance).cmple(*p).all() && p.cmple(near.maxs + tolerance).all());
+    inside
+        .filter_map(|(l, p)| locate(b, p, tolerance).map(|m| Place { corners: vec![p], a: l, b: m }))
+        .collect()
+}
+
+/// Stretches of edges of a that run in faces of b, joined where they meet.
+fn along_faces<'a>(a: &'a Shape, b: &'a Shape, tolerance: f64) -> Vec<Place<'a>> {
+    let edges = a.features.edges_near(&b.bounds, tolerance);
+    edges.into_iter().flat_map(|e| along_one(a, b, e, tolerance)).collect()
+}
+
+fn along_one<'a>(a: &'a Shape, b: &'a Shape, e: usize, tolerance: f64) -> Vec<Place<'a>> {
+    let edge = &a.features.edges[e];
+    let [p, q] = edge.ends.map(|i| a.at(i));
+    let mut by_normal: BTreeMap<[u64; 3], (usize, Vec<[f64; 2]>)> = BTreeMap::new();
+    for f in b.faces_near(&around([p, q].into_iter()), tolerance) {
+        let Some(span) = within_face(b, f, p, q, tolerance) else { continue };
+        let middle = p.lerp(q, (span[0] + span[1]) / 2.0);
+        if locate(b, middle, tolerance).is_some_and(|l| l.form == Form::Flat) {
+            let key = b.faces[f].normal.to_array().map(f64::to_bits);
+            by_normal.entry(key).or_insert((f, Vec::new())).1.push(span);
+        }
+    }
+    let gap = tolerance / p.distance(q);
+    let stretches = by_normal.into_values().flat_map(|(f, spans)| {
+        let place = move |s: [f64; 2]| Place {
+            corners: s.map(|t| p.lerp(q, t)).to_vec(),
+            a: &edge.local,
+            b: &b.faces[f].local,
+        };
+        joined(spans, gap).into_iter().map(place)
+    });
+    stretches.collect()
+}
+
+/// Spans closer than `gap` made one.
+fn joined(mut spans: Vec<[f64; 2]>, gap: f64) -> Vec<[f64; 2]> {
+    spans.sort_by(|x, y| x[0].total_cmp(&y[0]));
+    spans.into_iter().fold(Vec::new(), |mut out: Vec<[f64; 2]>, s| {
+        match out.last_mut() {
+            Some(last) if s[0] - last[1] <= gap => last[1] = last[1].max(s[1]),
+            _ => out.push(s),
+        }
+        out
+    })
+}
+
+/// The span of the segment over facet f, if it is longer than twice the tolerance and stays within it of the plane.
+fn within_face(s: &Shape, f: usize, p: DVec3, q: DVec3, tolerance: f64) -> Option<[f64; 2]> {
+    let n = s.faces[f].normal;
+    let ring: Vec<DVec3> = s.ring(f).collect();
+    let side = |k: usize, x: DVec3| n.cross(ring[(k + 1) % ring.len()] - ring[k]).dot(x - ring[k]);
+    let span = (0..ring.len()).try_fold([0.0, 1.0], |span, k| cut(span, side(k, p), side(k, q)))?;
+    let off = span.map(|t| (p.lerp(q, t) - ring[0]).dot(n).abs());
+    let long = (span[1] - span[0]) * p.distance(q) > 2.0 * tolerance;
+    (long && off[0] <= tolerance && off[1] <= tolerance).then_some(span)
+}
+
+/// The part of the span where the affine function from s (at 0) to t (at 1) is not negative.
+fn cut([lo, hi]: [f64; 2], s: f64, t: f64) -> Option<[f64; 2]> {
+    let zero = s / (s - t);
+    let span = match (s >= 0.0, t >= 0.0) {
+        (true, true) => [lo, hi],
+        (true, false) => [lo, hi.min(zero)],
+        (false, true) => [lo.max(zero), hi],
+        (false, false) => return None,
+    };
+    (span[0] < span[1]).then_some(span)
+}
+
+#[derive(Clone, Copy, PartialEq)]
+enum Pairing {
+    /// The edges stay within the tolerance over their whole common length.
+    Along,
+    /// They cross in a point inside both.
+    Across,
+}
+
+fn edge_pairs<'a>(a: &'a Shape, b: &'a Shape, tolerance: f64, pairing: Pairing) -> Vec<Place<'a>> {
+    let place = move |e: usize, f: usize| {
+        let (ea, eb) = (&a.features.edges[e], &b.features.edges[f]);
+        let ([p, q], [r, s]) = (ea.ends.map(|i| a.at(i)), eb.ends.map(|i| b.at(i)));
+        let corners = match pairing {
+            Pairing::Along => stretch(p, q, r, s, tolerance),
+            Pairing::Across => crossing(p, q, r, s, tolerance).map(|x| vec![x]),
+        };
+        corners.map(|corners| Place { corners, a: &ea.local, b: &eb.local })
+    };
+    let pairs = a.features.edges_near(&b.bounds, tolerance).into_iter().flat_map(|e| {
+        let bounds = around(a.features.edges[e].ends.iter().map(|&i| a.at(i)));
+        b.features.edges_near(&bounds, tolerance).into_iter().map(move |f| (e, f))
+    });
+    pairs.filter_map(|(e, f)| place(e, f)).collect()
+}
+
+/// Sine of the angle between two segments times the shorter length: how far they part over it.
+fn parting(p: DVec3, q: DVec3, r: DVec3, s: DVec3) -> f64 {
+    let (d, e) = (q - p, s - r);
+    d.cross(e).length() / d.length().max(e.length())
+}
+
+/// The common stretch of two edges that part by no more than the tolerance.
+fn stretch(p: DVec3, q: DVec3, r: DVec3, s: DVec3, tolerance: f64) -> Option<Vec<DVec3>> {
+    let d = q - p;
+    let t = |x: DVec3| (x - p).dot(d) / d.length_squared();
+    let (lo, hi) = (t(r).min(t(s)).max(0.0), t(r).max(t(s)).min(1.0));
+    let ends = [p.lerp(q, lo), p.lerp(q, hi)];
+    let long = (hi - lo) * d.length() > 2.0 * tolerance;
+    let near = ends.iter().all(|&x| segment_distance(r, s, x) <= tolerance);
+    (long && near && parting(p, q, r, s) <= tolerance).then(|| ends.to_vec())
+}
+
+/// Where two edges cross within the tolerance, farther than it from their ends.
+fn crossing(p: DVec3, q: DVec3, r: DVec3, s: DVec3, tolerance: f64) -> Option<DVec3> {
+    let (d, e, w) = (q - p, s - r, r - p);
+    let n = d.cross(e);
+    if parting(p, q, r, s) <= tolerance {
+        return None;
+    }
+    let (t, u) = (w.cross(e).dot(n) / n.length_squared(), w.cross(d).dot(n) / n.length_squared());
+    let (x, y) = (p + t * d, r + u * e);
+    let inner = |t: f64, l: f64| t * l > tolerance && (1.0 - t) * l > tolerance;
+    (inner(t, d.length()) && inner(u, e.length()) && x.distance(y) <= tolerance).then(|| (x + y) / 2.0)
+}

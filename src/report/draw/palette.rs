@@ -1,0 +1,59 @@
+//! Takes nothing, gives colours that stay apart for every kind of colour vision.
+//!
+//! Wefts are warm and wefts only, warps cool: orange against blue is the pair that deuteranopes, protanopes and
+//! tritanopes all tell apart; neighbours of one family differ in lightness. Not promised: more than four shades each.
+
+/// Linear light, each channel in 0..=1.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Colour(pub [f64; 3]);
+
+impl Colour {
+    /// From the bytes that colour pickers and style sheets speak of.
+    pub fn srgb(rgb: [u8; 3]) -> Colour {
+        Colour(rgb.map(|c| decode(f64::from(c) / 255.0)))
+    }
+
+    pub(super) fn scaled(self, light: [f64; 3]) -> [f64; 3] {
+        [0, 1, 2].map(|k| self.0[k] * light[k])
+    }
+}
+
+pub const WARM: [[u8; 3]; 4] = [[230, 159, 0], [205, 88, 24], [247, 203, 110], [148, 62, 20]];
+pub const COOL: [[u8; 3]; 4] = [[86, 164, 214], [22, 92, 152], [166, 210, 236], [28, 58, 104]];
+pub const OTHER: [[u8; 3]; 8] = [
+    [230, 159, 0],
+    [86, 164, 214],
+    [0, 138, 102],
+    [240, 214, 90],
+    [22, 92, 152],
+    [205, 88, 24],
+    [196, 130, 172],
+    [150, 152, 150],
+];
+/// Lines, in nearly black.
+pub const INK: [u8; 3] = [26, 26, 32];
+pub const FORCE: [u8; 3] = [190, 20, 84];
+pub const MOTION: [u8; 3] = [0, 120, 90];
+
+/// The colour of a part: warm for `weft-J`, cool for `warp-I` (the ids of woven assemblies), else by its place.
+pub fn of_part(id: &str, place: usize) -> Colour {
+    let strand = |prefix: &str| id.strip_prefix(prefix)?.split('/').next()?.parse::<usize>().ok();
+    let pick = |table: &[[u8; 3]], k: usize| Colour::srgb(table[k % table.len()]);
+    match (strand("weft-"), strand("warp-")) {
+        (Some(j), _) => pick(&WARM, j),
+        (_, Some(i)) => pick(&COOL, i),
+        _ => pick(&OTHER, place),
+    }
+}
+
+/// IEC 61966-2-1, encoded to linear.
+fn decode(c: f64) -> f64 {
+    if c <= 0.04045 { c / 12.92 } else { ((c + 0.055) / 1.055).powf(2.4) }
+}
+
+/// IEC 61966-2-1, linear to a byte.
+pub(super) fn encode(c: f64) -> u8 {
+    let c = c.clamp(0.0, 1.0);
+    let e = if c <= 0.003_130_8 { c * 12.92 } else { 1.055 * c.powf(1.0 / 2.4) - 0.055 };
+    (e * 255.0).round() as u8
+}

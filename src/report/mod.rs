@@ -1,0 +1,10 @@
+//! Takes what the other stages found, gives it to people: pictures, a page, a summary for the terminal.
+//!
+//! Not promised: any finding of its own. Words and numbers are printed as given; what a caller leaves out is shown as
+//! not run, never as passed.
+
+pub mod content;
+pub mod draw;
+pub mod file;
+pub mod page;
+pub mod text;

@@ -1,0 +1,269 @@
+//! Takes chapters, gives one HTML file that stands alone: no script, no address outside, the same bytes every time.
+//!
+//! Promised: caller's strings are text wherever they appear, never markup; an SVG is shown as an image, which runs
+//! nothing. Not promised: any knowledge of geometry, or that a picture's bytes are a picture.
+
+use super::content::{Align, Answer, Chapter, Format, Picture, Table, Tone, harmless};
+
+/// Everything that the page says. Chapters that nobody asked for are [`Answer::NotRun`] and are shown so.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PageInput {
+    pub title: String,
+    /// What was looked at, in one sentence.
+    pub lead: String,
+    /// Above everything else; the first one is shown large.
+    pub pictures: Vec<Picture>,
+    pub draft: Answer<Chapter>,
+    pub verdict: Answer<Chapter>,
+    pub plan: Answer<Chapter>,
+    pub flexible: Answer<Chapter>,
+    pub repeats: Answer<Chapter>,
+    pub chirality: Answer<Chapter>,
+    pub parts: Answer<Chapter>,
+    pub ledger: Answer<Chapter>,
+    pub findings: Answer<Chapter>,
+    pub limits: Vec<String>,
+}
+
+impl PageInput {
+    /// Anchor, title and answer of each chapter, in the order of the page.
+    fn chapters(&self) -> [(&'static str, &'static str, &Answer<Chapter>); 9] {
+        [
+            ("verdict", "Does it lock?", &self.verdict),
+            ("draft", "The weave", &self.draft),
+            ("plan", "How it goes together", &self.plan),
+            ("flexible", "Flexible parts", &self.flexible),
+            ("repeats", "Repetition", &self.repeats),
+            ("chirality", "Chirality", &self.chirality),
+            ("parts", "Parts as made", &self.parts),
+            ("ledger", "Scale ledger", &self.ledger),
+            ("findings", "Findings", &self.findings),
+        ]
+    }
+}
+
+/// Nothing may be fetched or run, whatever a string smuggled in; only embedded images and the page's own style.
+const POLICY: &str =
+    "default-src 'none'; img-src data:; style-src 'unsafe-inline'; base-uri 'none'; form-action 'none'";
+
+/// The page as UTF-8 HTML.
+pub fn page(input: &PageInput) -> String {
+    let mut h = Html::default();
+    h.raw("<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n");
+    h.raw("<meta http-equiv=\"Content-Security-Policy\" content=\"").text(POLICY).raw("\">\n");
+    h.raw("<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n");
+    h.raw("<meta name=\"color-scheme\" content=\"light dark\">\n");
+    h.raw("<title>").text(&input.title).raw("</title>\n<style>\n");
+    h.raw(include_str!("page.css")).raw("</style>\n</head>\n<body>\n");
+    h.raw("<a class=\"skip\" href=\"#main\">Skip to the answers</a>\n");
+    header(&mut h, input);
+    contents(&mut h, input);
+    h.raw("<main id=\"main\">\n");
+    input.chapters().iter().for_each(|(anchor, title, answer)| section(&mut h, anchor, title, answer));
+    limits(&mut h, &input.limits);
+    h.raw("</main>\n<footer><p>Made by weavelock. This file is complete: it loads nothing and runs nothing.</p></footer>\n");
+    h.raw("</body>\n</html>\n");
+    h.0
+}
+
+fn header(h: &mut Html, input: &PageInput) {
+    h.raw("<header>\n<h1>")
+        .text(&input.title)
+        .raw("</h1>\n<p class=\"lead\">")
+        .text(&input.lead)
+        .raw("</p>\n");
+    if let Answer::Given(c) = &input.verdict {
+        headline(h, c);
+    }
+    pictures(h, &input.pictures);
+    h.raw("</header>\n");
+}
+
+fn contents(h: &mut Html, input: &PageInput) {
+    h.raw("<nav aria-label=\"Contents\">\n<ul>\n");
+    for (anchor, title, answer) in input.chapters() {
+        h.raw("<li><a href=\"#").text(anchor).raw("\">").text(title).raw("</a>");
+        if matches!(answer, Answer::NotRun { .. }) {
+            h.raw(" <span class=\"quiet\">(not run)</span>");
+        }
+        h.raw("</li>\n");
+    }
+    h.raw("<li><a href=\"#limits\">Limits</a></li>\n</ul>\n</nav>\n");
+}
+
+fn section(h: &mut Html, anchor: &str, title: &str, answer: &Answer<Chapter>) {
+    h.raw("<section id=\"")
+        .text(anchor)
+        .raw("\" aria-labelledby=\"")
+        .text(anchor)
+        .raw("-title\">\n<h2 id=\"");
+    h.text(anchor).raw("-title\">").text(title).raw("</h2>\n");
+    match answer {
+        Answer::Given(c) => chapter(h, c),
+        Answer::NotRun { why } => {
+            h.raw("<p class=\"quiet\"><strong>Not run.</strong> ").text(why).raw("</p>\n");
+        }
+    }
+    h.raw("</section>\n");
+}
+
+fn chapter(h: &mut Html, c: &Chapter) {
+    headline(h, c);
+    for w in &c.words {
+        h.raw("<p>").text(w).raw("</p>\n");
+    }
+    if c.pictures.is_empty() && !c.figure.is_empty() {
+        h.raw("<pre>").text(&c.figure.join("\n")).raw("</pre>\n");
+    }
+    pictures(h, &c.pictures);
+    if !c.facts.is_empty() {
+        h.raw("<dl>\n");
+        for (name, value) in &c.facts {
+            h.raw("<div><dt>").text(name).raw("</dt><dd>").text(value).raw("</dd></div>\n");
+        }
+        h.raw("</dl>\n");
+    }
+    c.tables.iter().for_each(|t| table(h, t));
+}
+
+fn headline(h: &mut Html, c: &Chapter) {
+    if c.headline.is_empty() {
+        return;
+    }
+    let class = match c.tone {
+        Tone::Good => "good",
+        Tone::Bad => "bad",
+        Tone::Undecided => "undecided",
+        Tone::Plain => "plain",
+    };
+    h.raw("<p class=\"headline ").text(class).raw("\">");
+    if c.tone != Tone::Plain {
+        h.raw("<span class=\"mark\" aria-hidden=\"true\">")
+            .text(c.tone.mark().encode_utf8(&mut [0; 4]))
+            .raw("</span> ");
+    }
+    h.text(&c.headline).raw("</p>\n");
+}
+
+fn pictures(h: &mut Html, pictures: &[Picture]) {
+    if pictures.is_empty() {
+        return;
+    }
+    h.raw("<div class=\"pictures\">\n");
+    for p in pictures {
+        h.raw("<figure><img width=\"")
+            .text(&p.width.to_string())
+            .raw("\" height=\"")
+            .text(&p.height.to_string());
+        h.raw("\" alt=\"").text(&p.alt).raw("\" src=\"");
+        match &p.format {
+            Format::Png(bytes) => h.raw("data:image/png;base64,").base64(bytes),
+            Format::Svg(text) => h.raw("data:image/svg+xml;base64,").base64(text.as_bytes()),
+        };
+        h.raw("\">");
+        if !p.caption.is_empty() {
+            h.raw("<figcaption>").text(&p.caption).raw("</figcaption>");
+        }
+        h.raw("</figure>\n");
+    }
+    h.raw("</div>\n");
+}
+
+/// A table in a box of its own, which a keyboard can reach and scroll where the screen is narrow.
+fn table(h: &mut Html, t: &Table) {
+    let label = if t.caption.is_empty() { "Table" } else { &t.caption };
+    h.raw("<div class=\"table\" role=\"region\" tabindex=\"0\" aria-label=\"")
+        .text(label)
+        .raw("\">\n<table>\n");
+    if !t.caption.is_empty() {
+        h.raw("<caption>").text(&t.caption).raw("</caption>\n");
+    }
+    h.raw("<thead><tr>");
+    for c in &t.head {
+        h.raw(head_cell(c.align)).text(&c.title).raw("</th>");
+    }
+    h.raw("</tr></thead>\n<tbody>\n");
+    for row in &t.rows {
+        h.raw("<tr>");
+        for (c, text) in t.cells(row) {
+            h.raw(cell(text, c.align)).text(text).raw("</td>");
+        }
+        h.raw("</tr>\n");
+    }
+    if t.rows.is_empty() {
+        h.raw("<tr><td colspan=\"").text(&t.head.len().max(1).to_string()).raw("\">None.</td></tr>\n");
+    }
+    h.raw("</tbody>\n</table>\n</div>\n");
+}
+
+fn head_cell(align: Align) -> &'static str {
+    match align {
+        Align::Left => "<th scope=\"col\">",
+        Align::Right => "<th scope=\"col\" class=\"number\">",
+    }
+}
+
+/// Words up to this many characters, ids among them, are not broken at their hyphens.
+const SHORT: usize = 16;
+
+fn cell(text: &str, align: Align) -> &'static str {
+    match align {
+        Align::Right => "<td class=\"number\">",
+        Align::Left if text.chars().count() <= SHORT => "<td class=\"short\">",
+        Align::Left => "<td>",
+    }
+}
+
+fn limits(h: &mut Html, limits: &[String]) {
+    h.raw("<section id=\"limits\" aria-labelledby=\"limits-title\">\n<h2 id=\"limits-title\">Limits</h2>\n");
+    if limits.is_empty() {
+        h.raw("<p>None stated.</p>\n");
+    } else {
+        h.raw("<ul>\n");
+        for l in limits {
+            h.raw("<li>").text(l).raw("</li>\n");
+        }
+        h.raw("</ul>\n");
+    }
+    h.raw("</section>\n");
+}
+
+/// Markup under construction. Only words of this program get in raw; a caller's string has no way around [`Html::text`].
+#[derive(Default)]
+struct Html(String);
+
+impl Html {
+    fn raw(&mut self, markup: &'static str) -> &mut Html {
+        self.0.push_str(markup);
+        self
+    }
+
+    /// Safe between tags and inside double quotes.
+    fn text(&mut self, text: &str) -> &mut Html {
+        for c in text.chars() {
+            match c {
+                '&' => self.0.push_str("&amp;"),
+                '<' => self.0.push_str("&lt;"),
+                '>' => self.0.push_str("&gt;"),
+                '"' => self.0.push_str("&quot;"),
+                '\'' => self.0.push_str("&#39;"),
+                '\n' => self.0.push('\n'),
+                c => self.0.push(harmless(c)),
+            }
+        }
+        self
+    }
+
+    /// RFC 4648, with padding.
+    fn base64(&mut self, bytes: &[u8]) -> &mut Html {
+        const LETTERS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+        for group in bytes.chunks(3) {
+            let word = (0..3).fold(0u32, |w, k| w << 8 | u32::from(group.get(k).copied().unwrap_or(0)));
+            for k in 0..4 {
+                let letter = LETTERS[(word >> (18 - 6 * k) & 63) as usize];
+                self.0.push(if k <= group.len() { char::from(letter) } else { '=' });
+            }
+        }
+        self
+    }
+}

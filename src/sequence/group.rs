@@ -1,0 +1,194 @@
+//! Takes a set of parts none of which can leave alone, gives a group that can leave together by one straight move, or
+//! says that no group can, or that the search gave up.
+//!
+//! In a direction whose blocking graph is strongly connected nothing can leave; the arcs of a spanning in-tree and
+//! out-tree keep it so in the whole intersection of their cones, which is taken away at once. Opposite directions have
+//! transposed graphs, so half the sphere is enough. Sound; `Never` is complete as in `leave`.
+
+use super::field::{Field, Set};
+use super::leave::landmarks;
+use crate::assembly::PartIx;
+use crate::blocking::SAME_ANGLE;
+use crate::blocking::cone::{Cone, polar};
+use crate::blocking::graph::{Dbg, Witness, finite, infinitesimal, loose, tie};
+use crate::blocking::sector::{Blocked, Sector, sectors};
+use crate::blocking::shadow::View;
+use glam::DVec3;
+use petgraph::Direction;
+use petgraph::graph::NodeIndex;
+use petgraph::visit::EdgeRef;
+use std::collections::{BTreeMap, VecDeque};
+
+/// Blocking graphs made for one set before giving up.
+const MOST_GRAPHS: usize = 300;
+
+#[derive(Clone, Debug)]
+pub enum Group {
+    /// These leave along this unit direction; none of them is held.
+    Leaves {
+        parts: Set,
+        along: DVec3,
+    },
+    Never,
+    GaveUp,
+}
+
+/// What was found, and how many blocking graphs were made.
+pub struct GroupSearch {
+    pub group: Group,
+    pub tried: usize,
+}
+
+pub fn group(field: &Field, set: &Set, prefer: &[DVec3]) -> GroupSearch {
+    let parts: Vec<PartIx> = set.iter().copied().collect();
+    let mut tried = Vec::new();
+    for d in prefer.iter().copied().chain(hints(field, set)) {
+        if tried.len() < MOST_GRAPHS && is_new(&tried, d) {
+            tried.push(d);
+            if let Some(found) = parting(field, set, &dbg(field, &parts, d), d) {
+                return GroupSearch { group: found, tried: tried.len() };
+            }
+        }
+    }
+    let mut left: VecDeque<Sector> = half_sphere(field, set).into();
+    while let Some(sector) = left.pop_front() {
+        let d = sector.middle();
+        if tried.len() >= MOST_GRAPHS {
+            return GroupSearch { group: Group::GaveUp, tried: tried.len() };
+        }
+        tried.push(d);
+        let graph = dbg(field, &parts, d);
+        if let Some(found) = parting(field, set, &graph, d) {
+            return GroupSearch { group: found, tried: tried.len() };
+        }
+        let blocked = kept_together(field, &parts, &graph, d);
+        left.extend(if blocked.holds(d) { blocked.taken_from(&sector) } else { sector.split(d) });
+    }
+    GroupSearch { group: Group::Never, tried: tried.len() }
+}
+
+/// Opposite directions count as one.
+fn is_new(tried: &[DVec3], d: DVec3) -> bool {
+    tried.iter().all(|t| t.distance(d) > SAME_ANGLE && t.distance(-d) > SAME_ANGLE)
+}
+
+fn dbg(field: &Field, parts: &[PartIx], d: DVec3) -> Dbg {
+    let mut graph = finite(&View::new(&field.shapes, d), parts, field.touch);
+    tie(&mut graph, |p| field.is_held(p));
+    graph
+}
+
+/// Directions in which single parts, or pairs of neighbors, may start to move.
+fn hints(field: &Field, set: &Set) -> Vec<DVec3> {
+    let single = |&p: &PartIx| Set::from([p]);
+    let pair = |&p: &PartIx| {
+        let beside: Set = field.sides(&single(&p), set).map(|s| s.other).filter(|&q| q > p).collect();
+        beside.into_iter().map(move |q| Set::from([p, q])).collect::<Vec<_>>()
+    };
+    let groups = set.iter().map(single).chain(set.iter().flat_map(pair));
+    let cone = |g: Set| {
+        let rest = set.difference(&g).copied().collect();
+        polar(field.sides(&g, &rest).map(|s| s.normal))
+    };
+    groups.map(cone).flat_map(|c| landmarks(&c).collect::<Vec<_>>()).collect()
+}
+
+/// The smallest group that the graph lets go along d or -d.
+fn parting(field: &Field, set: &Set, graph: &Dbg, d: DVec3) -> Option<Group> {
+    let along = loose(graph, Direction::Outgoing).into_iter().map(|g| (g, d));
+    let back = loose(graph, Direction::Incoming).into_iter().map(|g| (g, -d));
+    let both = along.chain(back).filter(|(g, _)| g.len() < set.len());
+    let may = both.filter_map(|(g, d)| {
+        let group: Set = g.into_iter().collect();
+        let rest: Set = set.difference(&group).copied().collect();
+        let has_held = |s: &Set| s.iter().any(|&p| field.is_held(p));
+        match (has_held(&group), has_held(&rest)) {
+            (true, _) => Some((rest, -d)),
+            (false, true) => Some((group, d)),
+            (false, false) if rest.len() < group.len() => Some((rest, -d)),
+            (false, false) => Some((group, d)),
+        }
+    });
+    let size = |s: &Set| (s.len(), s.iter().map(|&p| field.volume(p)).sum::<f64>());
+    let best = may.min_by(|(a, _), (b, _)| {
+        let ((na, va), (nb, vb)) = (size(a), size(b));
+        na.cmp(&nb).then(va.total_cmp(&vb)).then(a.cmp(b))
+    });
+    best.map(|(parts, along)| Group::Leaves { parts, along })
+}
+
+/// Four sectors that cover a half sphere, in a frame that turns with the assembly where it has patches.
+fn half_sphere(field: &Field, set: &Set) -> Vec<Sector> {
+    let mut normals = field.sides(set, set).map(|s| s.normal);
+    let z = normals.next().unwrap_or(DVec3::Z);
+    let x = normals
+        .map(|n| n.reject_from_normalized(z))
+        .find(|n| n.length() > SAME_ANGLE.sqrt())
+        .map_or_else(|| z.any_orthonormal_vector(), DVec3::normalize);
+    sectors(&Cone { lines: vec![x, z.cross(x)], rays: vec![z], middle: None })
+}
+
+/// Directions around d in which the graph is known to stay strongly connected.
+fn kept_together(field: &Field, parts: &[PartIx], graph: &Dbg, d: DVec3) -> Blocked {
+    let arcs = widest_arcs(field, parts, graph, d);
+    let Some(root) = graph.node_indices().next() else { return Blocked(vec![]) };
+    let mut planes = Vec::new();
+    for way in [Direction::Outgoing, Direction::Incoming] {
+        for arc in spanning(graph, &arcs, root, way, d) {
+            planes.extend_from_slice(&arcs[&arc].0);
+        }
+    }
+    Blocked(planes)
+}
+
+type Arcs = BTreeMap<(NodeIndex, NodeIndex), Blocked>;
+
+/// How far inside a blocked cone the direction is, in radians to first order.
+fn margin(blocked: &Blocked, d: DVec3) -> f64 {
+    blocked.0.iter().map(|n| n.dot(d)).fold(1.0, f64::min)
+}
+
+/// For each arc the blocked cone, among its patch and its cells, in which d is deepest.
+fn widest_arcs(field: &Field, parts: &[PartIx], graph: &Dbg, d: DVec3) -> Arcs {
+    let cone = |from: NodeIndex, to: NodeIndex, w: &Witness| match *w {
+        Witness::Held => Blocked(vec![]),
+        Witness::Patch(k) => {
+            let n = field.patches[k].normal;
+            Blocked::by_patch(if n.dot(d) > 0.0 { n } else { -n })
+        }
+        Witness::Cells(m) => field.blocked(graph[from], m.a, graph[to], m.b),
+    };
+    let first_order = infinitesimal(parts, field.patches, d);
+    let mut arcs = Arcs::new();
+    for g in [graph, &first_order] {
+        for e in g.edge_references().filter(|e| graph.contains_edge(e.source(), e.target())) {
+            let (key, new) = ((e.source(), e.target()), cone(e.source(), e.target(), e.weight()));
+            if arcs.get(&key).is_none_or(|old| margin(old, d) < margin(&new, d)) {
+                arcs.insert(key, new);
+            }
+        }
+    }
+    arcs
+}
+
+/// The tree from (or to) the root that always takes the arc with the widest margin next.
+fn spanning(
+    graph: &Dbg,
+    arcs: &Arcs,
+    root: NodeIndex,
+    way: Direction,
+    d: DVec3,
+) -> Vec<(NodeIndex, NodeIndex)> {
+    let (mut inside, mut tree) = (vec![root], Vec::new());
+    let ends = |&(a, b): &(NodeIndex, NodeIndex)| if way == Direction::Outgoing { (a, b) } else { (b, a) };
+    while inside.len() < graph.node_count() {
+        let open = arcs.iter().filter(|(arc, _)| {
+            let (near, far) = ends(arc);
+            inside.contains(&near) && !inside.contains(&far)
+        });
+        let Some((&arc, _)) = open.max_by(|a, b| margin(a.1, d).total_cmp(&margin(b.1, d))) else { break };
+        inside.push(ends(&arc).1);
+        tree.push(arc);
+    }
+    tree
+}

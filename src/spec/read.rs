@@ -1,0 +1,214 @@
+//! Takes a spec file; gives what it asks for, or all its faults: which keys stand where, and what both kinds share.
+//!
+//! Not promised: that a fault is not followed by others that vanish with it.
+
+use super::reader::{Field, Fields, Reader};
+use super::tree::{SyntaxFault, Table};
+use super::{FabSpec, Spec, Subject, json, meshes, tree, woven};
+use crate::fault::Faults;
+use crate::input;
+use std::collections::BTreeMap;
+use std::path::Path;
+
+/// How a spec is written; the keys are the same.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Syntax {
+    Toml,
+    Json,
+}
+
+impl Syntax {
+    /// JSON where the file's name ends in `.json` or its text begins with a brace (no TOML does), else TOML.
+    pub fn of(file: &Path, text: &str) -> Syntax {
+        let named = file.extension().is_some_and(|end| end.eq_ignore_ascii_case("json"));
+        if named || text.trim_start().starts_with('{') { Syntax::Json } else { Syntax::Toml }
+    }
+
+    fn tree(self, text: &str) -> (Table, Vec<SyntaxFault>) {
+        match self {
+            Syntax::Toml => tree::toml(text),
+            Syntax::Json => json::json(text)
+                .map_or_else(|fault| (Table::default(), vec![fault]), |table| (table, Vec::new())),
+        }
+    }
+}
+
+/// Reads a spec file.
+pub fn read(path: &Path) -> Result<Spec, Faults> {
+    let text = input::text(input::bytes(path)?, path)?;
+    parse(&text, path, Syntax::of(path, &text))
+}
+
+/// Reads a spec's text; `file` names it in faults, and the files that it names are relative to the folder of `file`.
+pub fn parse(text: &str, file: &Path, syntax: Syntax) -> Result<Spec, Faults> {
+    let (table, faults) = syntax.tree(text);
+    let mut reader = Reader::new(text, file.to_path_buf(), faults);
+    let root = reader.root(&table);
+    let parts = whole(&mut reader, &root);
+    let ((name, subject, fab), places) = reader.finish(parts)?;
+    Ok(Spec { name, subject, fab, file: file.to_path_buf(), places })
+}
+
+const WOVEN_KEYS: [&str; 8] = ["name", "weave", "profile", "swatch", "piece", "held", "size", "fab"];
+const MESH_KEYS: [&str; 5] = ["name", "part", "contact", "size", "fab"];
+
+/// Keys that someone may write outside of their table.
+const HOMES: [(&str, &str); 26] = [
+    ("abc", "`abc` belongs into [weave]"),
+    ("draft", "`draft` belongs into [weave]"),
+    ("wif", "`wif` belongs into [weave]"),
+    ("rise", "`rise` belongs into [profile]"),
+    ("lift", "`lift` belongs into [profile]"),
+    ("cover", "`cover` belongs into [profile]"),
+    ("samples", "`samples` belongs into [profile]"),
+    ("points", "`points` belongs into [profile]"),
+    ("bounds", "`bounds` belongs into [profile]"),
+    ("wefts", "`wefts` belongs into [swatch]"),
+    ("warps", "`warps` belongs into [swatch]"),
+    ("cut", "`cut` belongs into [swatch]"),
+    ("repeat", "`repeat` belongs into [swatch]"),
+    ("phase", "`phase` belongs into [swatch]"),
+    ("weft", "`weft` belongs into [[piece]]"),
+    ("warp", "`warp` belongs into [[piece]]"),
+    ("from", "`from` belongs into [[piece]]"),
+    ("to", "`to` belongs into [[piece]]"),
+    ("pitch", "`pitch` belongs into [size] of a woven assembly"),
+    ("unit", "`unit` belongs into [size] of an assembly of meshes"),
+    ("tolerance", "`tolerance` belongs into [contact] of an assembly of meshes"),
+    ("mesh", "`mesh` belongs into [[part]] of an assembly of meshes"),
+    ("at", "`at` belongs into [[part]] of an assembly of meshes"),
+    ("process", "`process` belongs into [fab]"),
+    ("clearance", "`clearance` belongs into [fab]"),
+    ("shrinkage", "`shrinkage` belongs into [fab]"),
+];
+
+/// Where a key belongs that is unknown where it stands.
+pub fn home(key: &str) -> Option<&'static str> {
+    HOMES.iter().find(|(name, _)| *name == key).map(|(_, home)| *home)
+}
+
+fn whole<'t>(reader: &mut Reader<'t>, root: &Fields<'t>) -> Option<(String, Subject, Option<FabSpec>)> {
+    let name = name(reader, root);
+    let meshes = reader.get(root, "part");
+    let (subject, width) = match &meshes {
+        Some(parts) => {
+            reader.only(root, &MESH_KEYS, mesh_home);
+            (meshes::meshes(reader, root, parts).map(Subject::Meshes), None)
+        }
+        None => {
+            reader.only(root, &WOVEN_KEYS, woven_home);
+            let woven = woven::woven(reader, root);
+            let pitch = woven.as_ref().map(|spec| spec.pitch_mm);
+            (woven.map(Subject::Woven), pitch)
+        }
+    };
+    let fab = match reader.get(root, "fab") {
+        Some(field) => Some(fab(reader, &field, width)?),
+        None => None,
+    };
+    Some((name?, subject?, fab))
+}
+
+fn mesh_home(key: &str) -> Option<&'static str> {
+    match key {
+        "held" => Some("with meshes each [[part]] says `held = true` itself"),
+        _ if WOVEN_KEYS.contains(&key) => {
+            Some("a file has either a weave or parts: this key goes with [weave], [[part]] stands here too")
+        }
+        _ => home(key),
+    }
+}
+
+fn woven_home(key: &str) -> Option<&'static str> {
+    match key {
+        "contact" => Some("[contact] goes with [[part]]; woven tiles know their contacts exactly"),
+        _ => home(key),
+    }
+}
+
+/// The name, by default the stem of the file's.
+fn name<'t>(reader: &mut Reader<'t>, root: &Fields<'t>) -> Option<String> {
+    let Some(field) = reader.get(root, "name") else {
+        let stem = reader.file.file_stem().map(|stem| stem.to_string_lossy().into_owned());
+        return Some(stem.unwrap_or_default());
+    };
+    let name = reader.text(&field, "the name of the assembly")?;
+    plain_name(reader, &field, name)
+}
+
+/// Longest name and id, in bytes, so that a file can be named after it with room for an ending.
+const MAX_NAME: usize = 200;
+
+/// A name that may become a file's: refused are control characters, and segments that lead out of a folder.
+pub fn plain_name(reader: &mut Reader<'_>, field: &Field, name: &str) -> Option<String> {
+    let leads_out = |part: &str| part.trim().is_empty() || part == "." || part == "..";
+    let what = if name.len() > MAX_NAME {
+        format!("is longer than {MAX_NAME} bytes")
+    } else if let Some(sign) = name.chars().find(|c| c.is_control() || matches!(c, '\\' | ':')) {
+        format!("has the character {sign:?}")
+    } else if name.split('/').any(leads_out) {
+        format!("is {}", super::reader::shown(name))
+    } else {
+        return Some(name.to_string());
+    };
+    reader.fault(field, what, "files are named after it: letters, digits, - and _ are safe");
+    None
+}
+
+/// Clearances beyond this, in mm, are slips: it is the largest pitch.
+const MAX_CLEARANCE_MM: f64 = 10_000.0;
+
+/// `width`: of a strand, in mm, where strands are what is made.
+fn fab<'t>(reader: &mut Reader<'t>, field: &Field<'t>, width: Option<f64>) -> Option<FabSpec> {
+    let fields = reader.table(field)?;
+    reader.only(&fields, &["process", "clearance", "shrinkage"], home);
+    let process = match reader.get(&fields, "process") {
+        Some(field) => process(reader, &field),
+        None => reader.lacks(&fields, "process", "is missing", "name a process, as in process = \"fdm-pla\""),
+    };
+    let clearance = reader.get(&fields, "clearance").map(|field| clearance(reader, &field, width));
+    let shrinkage = match reader.get(&fields, "shrinkage") {
+        Some(field) => shrinkage(reader, &field),
+        None => Some(BTreeMap::new()),
+    };
+    let clearance_mm = match clearance {
+        Some(read) => Some(read?),
+        None => None,
+    };
+    Some(FabSpec { process: process?, clearance_mm, shrinkage: shrinkage? })
+}
+
+fn process<'t>(reader: &mut Reader<'t>, field: &Field<'t>) -> Option<String> {
+    let hint = "name a process, as in \"fdm-pla\"";
+    let name = reader.text(field, hint)?.to_string();
+    if name.trim().is_empty() {
+        reader.fault(field, "is empty", hint);
+        return None;
+    }
+    Some(name)
+}
+
+fn clearance<'t>(reader: &mut Reader<'t>, field: &Field<'t>, width: Option<f64>) -> Option<f64> {
+    match width {
+        Some(pitch) => {
+            let why =
+                "it is taken off each face, and a strand is one pitch wide: half of that leaves nothing";
+            reader.length(field, 0.0..pitch / 2.0, why)
+        }
+        None => reader.length(field, 0.0..=MAX_CLEARANCE_MM, "it is taken off each face"),
+    }
+}
+
+fn shrinkage<'t>(reader: &mut Reader<'t>, field: &Field<'t>) -> Option<BTreeMap<String, f64>> {
+    let fields = reader.table(field)?;
+    let mut steps = Some(BTreeMap::new());
+    for step in fields.keys() {
+        let why = "no step known shrinks by more than 5 %; beyond 20 % it is a slip";
+        let share = reader.get(&fields, step).and_then(|field| reader.share(&field, 0.0..=0.2, why));
+        steps = steps.zip(share).map(|(mut steps, share)| {
+            steps.insert(step.to_string(), share);
+            steps
+        });
+    }
+    steps
+}

@@ -1,0 +1,4 @@
+mod bad_input;
+mod weave;
+mod plan;
+mod report;
