@@ -9,7 +9,8 @@ use rayon::prelude::*;
 use std::path::Path;
 
 pub(crate) fn check_all(report: &mut Report, pieces: &[Piece], programs: &Programs, folder: &Path) {
-    let openscad = OpenScad::new(&programs.openscad, folder).map_err(|e| format!("no room for its files: {e}"));
+    let openscad =
+        OpenScad::new(&programs.openscad, folder).map_err(|e| format!("no room for its files: {e}"));
     let names = (slicer::name(&programs.slicer), admesh::name(&programs.admesh));
     let high = |p: usize| pieces[p].made.as_ref().map_or(DVec3::ZERO, |m| m.mesh.bounds().1);
     let of_part = |(p, part): (usize, &crate::report::PartReport)| -> Vec<Check> {

@@ -19,7 +19,9 @@ fn error(id: &str, at: Vec<DVec3>, what: String, remedy: &str) -> Finding {
 
 pub fn of_failure(id: &str, failure: &Failure) -> Finding {
     let what = match failure.why {
-        Why::NoRoom => "facets that meet here face each other: no point lies under all of them by the clearance",
+        Why::NoRoom => {
+            "facets that meet here face each other: no point lies under all of them by the clearance"
+        }
         Why::TurnedOver => "the clearance turns a triangle over that no collapse could mend",
         Why::Vanished => "the clearance leaves nothing of this part",
     };
@@ -30,17 +32,20 @@ pub fn of_failure(id: &str, failure: &Failure) -> Finding {
 pub fn of_mesh(id: &str, master: &Mesh, scale: &Scale) -> Vec<Finding> {
     let mut found = Vec::new();
     if let Closure::Open { edges, at } = master.closure() {
-        let what = format!("{edges} edges are not between two opposite triangles; nothing is written for the part");
+        let what =
+            format!("{edges} edges are not between two opposite triangles; nothing is written for the part");
         found.push(error(id, vec![scale.down(at)], what, SMALLER));
         return found;
     }
     if let Some(c) = crossings(master).first() {
-        let what = "the clearance makes the surface cross itself; nothing is written for the part".to_string();
+        let what =
+            "the clearance makes the surface cross itself; nothing is written for the part".to_string();
         found.push(error(id, vec![scale.down(c.at)], what, SMALLER));
     }
     let topology = master.topology();
     if topology.bodies != 1 {
-        let what = format!("the clearance leaves {} bodies; nothing is written for the part", topology.bodies);
+        let what =
+            format!("the clearance leaves {} bodies; nothing is written for the part", topology.bodies);
         found.push(error(id, vec![], what, SMALLER));
     }
     found
@@ -63,7 +68,12 @@ pub fn collect(report: &mut Report, scale: &Scale) {
     found.extend(of_shrinkage(report, scale));
     found.extend(of_no_clearance(report));
     let note = "walls are not measured against the least wall of the process yet".to_string();
-    found.push(Finding { severity: Severity::Note, place: Place::default(), what: note, remedy: "look at thin lips in the slicer's preview".into() });
+    found.push(Finding {
+        severity: Severity::Note,
+        place: Place::default(),
+        what: note,
+        remedy: "look at thin lips in the slicer's preview".into(),
+    });
     report.findings.extend(found);
     report.findings.sort_by_key(|f| std::cmp::Reverse(f.severity));
     report.findings.dedup();
@@ -74,7 +84,10 @@ fn of_gap(gap: &Gap) -> Option<Finding> {
         Verdict::Kept => return None,
         Verdict::Short => (
             Severity::Error,
-            format!("the least gap is {:.4} mm, promised {:.4}; neither part is written", gap.least_mm, gap.promised_mm),
+            format!(
+                "the least gap is {:.4} mm, promised {:.4}; neither part is written",
+                gap.least_mm, gap.promised_mm
+            ),
             SMALLER,
         ),
         Verdict::Crossing => {
@@ -108,20 +121,32 @@ fn of_check(check: &Check, parts: &[String]) -> Option<Finding> {
 
 /// Shrinkage that is known less well than the clearance needs.
 fn of_shrinkage(report: &Report, scale: &Scale) -> Option<Finding> {
-    let extent = |p: &crate::report::PartReport| Some((p.high? - p.low?).max_element() / scale.factor);
+    let extent = |p: &crate::report::PartReport| {
+        Some((p.read_back.high? - p.read_back.low?).max_element() / scale.factor)
+    };
     let largest = report.parts.iter().filter_map(extent).fold(0.0, f64::max);
-    let spread = largest * (scale.range.1 - scale.factor).max(scale.factor - scale.range.0) / scale.factor / 2.0;
+    let spread =
+        largest * (scale.range.1 - scale.factor).max(scale.factor - scale.range.0) / scale.factor / 2.0;
     let what = format!(
         "the shrinkage is known so roughly that an end of the longest part may be off by {spread:.2} mm; the clearance is {:.2}",
         report.clearance.value
     );
     let remedy = "print and measure one part, and give the shrinkage that you find".into();
-    (spread > report.clearance.value)
-        .then(|| Finding { severity: Severity::Warning, place: Place::default(), what, remedy })
+    (spread > report.clearance.value).then(|| Finding {
+        severity: Severity::Warning,
+        place: Place::default(),
+        what,
+        remedy,
+    })
 }
 
 fn of_no_clearance(report: &Report) -> Option<Finding> {
     let what = "the clearance is zero: these parts are for looking at, they will not go together".to_string();
     let remedy = "give the clearance of the process".into();
-    (report.clearance.value == 0.0).then(|| Finding { severity: Severity::Warning, place: Place::default(), what, remedy })
+    (report.clearance.value == 0.0).then(|| Finding {
+        severity: Severity::Warning,
+        place: Place::default(),
+        what,
+        remedy,
+    })
 }

@@ -75,11 +75,17 @@ pub fn gaps(made: &[Option<Made>], promise: &Promise) -> Vec<Gap> {
     let boxes: Vec<Aabb> =
         made.iter().map(|m| Aabb::of(m.iter().flat_map(|m| m.mesh.vertices.iter().copied()))).collect();
     let wanted = |i: usize, j: usize| {
-        promise.neighbours.binary_search(&(i, j)).is_ok() || boxes[i].distance_squared(&boxes[j]) < reach * reach
+        promise.neighbours.binary_search(&(i, j)).is_ok()
+            || boxes[i].distance_squared(&boxes[j]) < reach * reach
     };
-    let pairs: Vec<(usize, usize)> =
-        (0..made.len()).flat_map(|i| (i + 1..made.len()).map(move |j| (i, j))).filter(|&(i, j)| wanted(i, j)).collect();
-    pairs.par_iter().filter_map(|&(i, j)| Some(gap(made[i].as_ref()?, made[j].as_ref()?, (i, j), promise))).collect()
+    let pairs: Vec<(usize, usize)> = (0..made.len())
+        .flat_map(|i| (i + 1..made.len()).map(move |j| (i, j)))
+        .filter(|&(i, j)| wanted(i, j))
+        .collect();
+    pairs
+        .par_iter()
+        .filter_map(|&(i, j)| Some(gap(made[i].as_ref()?, made[j].as_ref()?, (i, j), promise)))
+        .collect()
 }
 
 fn gap(a: &Made, b: &Made, pair: (usize, usize), promise: &Promise) -> Gap {
@@ -88,7 +94,9 @@ fn gap(a: &Made, b: &Made, pair: (usize, usize), promise: &Promise) -> Gap {
     let crossing = cross::between((&a.mesh, &a.tree), (&b.mesh, &b.tree)).first().map(|c| c.at);
     let inside = || {
         let corner = |m: &Made| m.mesh.vertices.first().copied();
-        corner(b).filter(|p| cross::encloses(&a.mesh, *p)).or(corner(a).filter(|p| cross::encloses(&b.mesh, *p)))
+        corner(b)
+            .filter(|p| cross::encloses(&a.mesh, *p))
+            .or(corner(a).filter(|p| cross::encloses(&b.mesh, *p)))
     };
     let (least_mm, at) = match crossing.or_else(inside) {
         Some(p) => (0.0, [p, p]),
@@ -97,7 +105,11 @@ fn gap(a: &Made, b: &Made, pair: (usize, usize), promise: &Promise) -> Gap {
             (near.distance / promise.scale.factor, [near.a, near.b])
         }
     };
-    let verdict = if crossing.is_some() || least_mm == 0.0 { Verdict::Crossing } else { judge(least_mm, relation, promise) };
+    let verdict = if crossing.is_some() || least_mm == 0.0 {
+        Verdict::Crossing
+    } else {
+        judge(least_mm, relation, promise)
+    };
     let at = at.map(|p| promise.scale.down(p));
     Gap { a: a.id.clone(), b: b.id.clone(), relation, promised_mm: promise.fit, least_mm, at, verdict }
 }

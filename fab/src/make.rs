@@ -10,15 +10,16 @@ use crate::cross;
 use crate::external;
 use crate::files::{Batch, FileError, obj, stems, stl};
 use crate::findings;
-use crate::gap::{self, Made, Promise, Verdict};
+use crate::gap::{self, Gap, Made, Promise, Verdict};
 use crate::ledger::Scale;
-use crate::mesh::{Closure, Mesh, Topology};
+use crate::mesh::Mesh;
 use crate::offset::{self, Aim, Offset};
 use crate::process::Process;
-use crate::report::{Finding, PartReport, Report};
+use crate::report::{Finding, PartReport, ReadBack, Report};
 use crate::shape::{Fault, Job, Role};
 use glam::DVec3;
 use rayon::prelude::*;
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 /// How a job is to be made.
@@ -62,6 +63,8 @@ const PAIR_IN_SNAPS: f64 = 2.0 * (MARGIN_IN_SNAPS + 1.0);
 /// A part on its way to the file.
 pub(crate) struct Piece {
     pub id: String,
+    /// Of its file names.
+    pub stem: String,
     pub offset: Offset,
     /// On the master, as f32 can hold it.
     pub master: Mesh,
@@ -77,59 +80,86 @@ pub fn make(job: &Job, recipe: &Recipe, folder: &Path) -> Result<Report, FabErro
         return Err(FabError::Job(faults));
     }
     let scale = Scale::of(&recipe.process, recipe.datum);
-    let clearance = recipe.process.clearance.value;
     let snap = stl::snap_distance(largest_coordinate(job, &scale)) / scale.factor;
-    let aim = Aim {
-        depth: clearance + MARGIN_IN_SNAPS * snap,
-        fit: 2.0 * (clearance + snap),
-        thinnest: THINNEST_IN_SNAPS * snap,
-    };
-    let offsets = offset::offset(job, &aim);
-    let mut pieces: Vec<Piece> = job.parts.iter().zip(offsets).collect::<Vec<_>>().into_par_iter()
-        .map(|(part, offset)| piece(&part.id, offset, &scale))
-        .collect();
-    let names = stems(&job.parts.iter().map(|p| p.id.clone()).collect::<Vec<_>>());
+    let mut pieces = pieces(job, &aim(recipe.process.clearance.value, snap), &scale);
     let mut batch = Batch::new(folder)?;
-    for (piece, name) in pieces.iter_mut().zip(&names) {
-        write(piece, name, recipe, &mut batch)?;
+    for piece in &mut pieces {
+        write(piece, recipe, &mut batch)?;
     }
-    let neighbours = job.neighbours();
-    let promise =
-        Promise { scale: &scale, fit: 2.0 * clearance, round_off: PAIR_IN_SNAPS * snap, neighbours: &neighbours };
-    let made: Vec<Option<Made>> = pieces.iter_mut().map(|p| p.made.take()).collect();
-    let gaps = gap::gaps(&made, &promise);
-    for (k, made) in made.into_iter().enumerate() {
-        let spoilt = |g: &&gap::Gap| {
-            matches!(g.verdict, Verdict::Short | Verdict::Crossing) && (g.a == pieces[k].id || g.b == pieces[k].id)
-        };
-        let keep = gaps.iter().find(spoilt).is_none();
-        pieces[k].made = made.filter(|_| keep);
-        if pieces[k].made.is_none() {
-            file_names(&names[k]).iter().for_each(|n| batch.discard(n));
-        }
+    let gaps = measure(job, recipe, &scale, snap, &mut pieces);
+    for piece in pieces.iter().filter(|p| p.made.is_none()) {
+        file_names(&piece.stem).iter().for_each(|n| batch.discard(n));
     }
     batch.commit()?;
-    let mut report = Report {
-        name: job.name.clone(),
-        process: recipe.process.name.clone(),
-        clearance: recipe.process.clearance.clone(),
-        fit_mm: promise.fit,
-        scale: scale.factor,
-        scale_range: scale.range,
-        datum: scale.datum,
-        ledger: scale.ledger.clone(),
-        parts: (0..pieces.len()).map(|p| part_report(job, &pieces, p, &names[p], recipe, folder)).collect(),
-        gaps,
-        pair_checks: vec![],
-        molds: vec![],
-        molds_note: "molds are not built yet".into(),
-        findings: pieces.iter().flat_map(|p| p.faults.clone()).collect(),
-    };
+    let mut report = report(job, recipe, &scale, &pieces, gaps, folder);
     if let Some(programs) = &recipe.programs {
         external::check_all(&mut report, &pieces, programs, folder);
     }
     findings::collect(&mut report, &scale);
     Ok(report)
+}
+
+fn aim(clearance: f64, snap: f64) -> Aim {
+    Aim {
+        depth: clearance + MARGIN_IN_SNAPS * snap,
+        fit: 2.0 * (clearance + snap),
+        thinnest: THINNEST_IN_SNAPS * snap,
+    }
+}
+
+fn pieces(job: &Job, aim: &Aim, scale: &Scale) -> Vec<Piece> {
+    let stems = stems(&job.parts.iter().map(|p| p.id.clone()).collect::<Vec<_>>());
+    let offsets = offset::offset(job, aim);
+    let all: Vec<_> = job.parts.iter().zip(stems).zip(offsets).collect();
+    all.into_par_iter().map(|((part, stem), offset)| piece(&part.id, stem, offset, scale)).collect()
+}
+
+fn piece(id: &str, stem: String, offset: Offset, scale: &Scale) -> Piece {
+    let master = stl::snapped(&offset.mesh.map(|v| scale.up(v)));
+    let mut faults: Vec<Finding> = offset.failures.iter().map(|f| findings::of_failure(id, f)).collect();
+    faults.extend(findings::of_mesh(id, &master, scale));
+    Piece { id: id.to_string(), stem, offset, master, made: None, faults }
+}
+
+/// Gaps of what was read back; a piece that comes too near to another is not to be written.
+fn measure(job: &Job, recipe: &Recipe, scale: &Scale, snap: f64, pieces: &mut [Piece]) -> Vec<Gap> {
+    let neighbours = job.neighbours();
+    let fit = 2.0 * recipe.process.clearance.value;
+    let promise = Promise { scale, fit, round_off: PAIR_IN_SNAPS * snap, neighbours: &neighbours };
+    let made: Vec<Option<Made>> = pieces.iter_mut().map(|p| p.made.take()).collect();
+    let gaps = gap::gaps(&made, &promise);
+    let bad = |g: &&Gap| matches!(g.verdict, Verdict::Short | Verdict::Crossing);
+    let spoilt: BTreeSet<&str> = gaps.iter().filter(bad).flat_map(|g| [g.a.as_str(), g.b.as_str()]).collect();
+    for (piece, made) in pieces.iter_mut().zip(made) {
+        piece.made = made.filter(|m| !spoilt.contains(m.id.as_str()));
+    }
+    gaps
+}
+
+fn report(
+    job: &Job,
+    recipe: &Recipe,
+    scale: &Scale,
+    pieces: &[Piece],
+    gaps: Vec<Gap>,
+    folder: &Path,
+) -> Report {
+    Report {
+        name: job.name.clone(),
+        process: recipe.process.name.clone(),
+        clearance: recipe.process.clearance.clone(),
+        fit_mm: 2.0 * recipe.process.clearance.value,
+        scale: scale.factor,
+        scale_range: scale.range,
+        datum: scale.datum,
+        ledger: scale.ledger.clone(),
+        parts: (0..pieces.len()).map(|p| part_report(job, pieces, p, recipe, folder)).collect(),
+        gaps,
+        pair_checks: vec![],
+        molds: vec![],
+        molds_note: "molds are not built yet".into(),
+        findings: pieces.iter().flat_map(|p| p.faults.clone()).collect(),
+    }
 }
 
 fn largest_coordinate(job: &Job, scale: &Scale) -> f64 {
@@ -140,23 +170,16 @@ fn largest_coordinate(job: &Job, scale: &Scale) -> f64 {
     job.parts.iter().map(place).fold(0.0, f64::max)
 }
 
-fn piece(id: &str, offset: Offset, scale: &Scale) -> Piece {
-    let master = stl::snapped(&offset.mesh.map(|v| scale.up(v)));
-    let mut faults: Vec<Finding> = offset.failures.iter().map(|f| findings::of_failure(id, f)).collect();
-    faults.extend(findings::of_mesh(id, &master, scale));
-    Piece { id: id.to_string(), offset, master, made: None, faults }
-}
-
 fn file_names(stem: &str) -> [String; 2] {
     ["stl", "obj"].map(|ending| format!("{stem}.mm.{ending}"))
 }
 
 /// Stages the files of a sound piece and reads them back.
-fn write(piece: &mut Piece, stem: &str, recipe: &Recipe, batch: &mut Batch) -> Result<(), FileError> {
+fn write(piece: &mut Piece, recipe: &Recipe, batch: &mut Batch) -> Result<(), FileError> {
     if !piece.faults.is_empty() {
         return Ok(());
     }
-    let [stl_name, obj_name] = file_names(stem);
+    let [stl_name, obj_name] = file_names(&piece.stem);
     let path = batch.stage(&stl_name, |out| stl::write(&piece.master, out))?;
     let mesh = reread(&path, |p| stl::read(&mut std::fs::File::open(p)?))?;
     if recipe.obj {
@@ -182,37 +205,32 @@ fn same_solid(read: &Mesh, written: &Mesh) -> bool {
     corners(read) == corners(written)
 }
 
-fn part_report(job: &Job, pieces: &[Piece], p: usize, stem: &str, recipe: &Recipe, folder: &Path) -> PartReport {
+fn part_report(job: &Job, pieces: &[Piece], p: usize, recipe: &Recipe, folder: &Path) -> PartReport {
     let (part, piece) = (&job.parts[p], &pieces[p]);
     let shape = &job.shapes[part.shape];
-    let made = piece.made.as_ref().map(|m| &m.mesh);
-    let contact = |f: &(usize, &Role)| *f.1 != Role::Outer;
-    let contact_area: f64 = part.roles.iter().enumerate().filter(contact).map(|(f, _)| shape.facet_area(f)).sum();
-    let nominal = shape.volume();
-    let finished = piece.offset.mesh.volume();
-    let path = |name: &String| folder.join(name).display().to_string();
-    let [stl_name, obj_name] = file_names(stem);
-    let topology: Option<Topology> = made.map(Mesh::topology);
+    let (nominal, finished) = (shape.volume(), piece.offset.mesh.volume());
+    let [stl_name, obj_name] = file_names(&piece.stem).map(|name| folder.join(name).display().to_string());
+    let same = piece.offset.same_as;
     PartReport {
         id: part.id.clone(),
-        file: made.map(|_| path(&stl_name)),
-        obj: made.filter(|_| recipe.obj).map(|_| path(&obj_name)),
-        same_as: (piece.offset.same_as != p).then(|| job.parts[piece.offset.same_as].id.clone()),
-        volume_mm3: made.map(Mesh::volume),
-        watertight: made.map(|m| m.closure() == Closure::Closed),
-        bodies: topology.map(|t| t.bodies),
-        genus: topology.map(|t| t.genus),
-        triangles: made.map(|m| m.triangles.len()),
-        low: made.map(|m| m.bounds().0),
-        high: made.map(|m| m.bounds().1),
+        file: piece.made.as_ref().map(|_| stl_name),
+        obj: piece.made.as_ref().filter(|_| recipe.obj).map(|_| obj_name),
+        same_as: (same != p).then(|| job.parts[same].id.clone()),
+        read_back: piece.made.as_ref().map(|m| ReadBack::of(&m.mesh)).unwrap_or_default(),
         expected_volume_mm3: piece.master.volume(),
         nominal_volume_mm3: nominal,
         removed_mm3: nominal - finished,
-        clearance_volume_mm3: recipe.process.clearance.value * contact_area,
+        clearance_volume_mm3: recipe.process.clearance.value * contact_area(job, p),
         mass_g: finished * recipe.process.density.value / MM3_IN_CM3,
         longest_move_mm: piece.offset.longest_move,
         checks: vec![],
     }
+}
+
+fn contact_area(job: &Job, p: usize) -> f64 {
+    let part = &job.parts[p];
+    let contact = part.roles.iter().enumerate().filter(|(_, r)| **r != Role::Outer);
+    contact.map(|(f, _)| job.shapes[part.shape].facet_area(f)).sum()
 }
 
 const MM3_IN_CM3: f64 = 1000.0;

@@ -3,6 +3,7 @@
 use crate::check::Check;
 use crate::gap::Gap;
 use crate::ledger::Entry;
+use crate::mesh::{Closure, Mesh};
 use crate::process::Figure;
 use glam::DVec3;
 use serde::Serialize;
@@ -31,6 +32,34 @@ pub struct Finding {
     pub remedy: String,
 }
 
+/// What was measured on a file after it was written, on the master's scale; all `None` where there is no file.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct ReadBack {
+    pub volume_mm3: Option<f64>,
+    pub watertight: Option<bool>,
+    pub bodies: Option<usize>,
+    pub genus: Option<i64>,
+    pub triangles: Option<usize>,
+    /// Bounding box, mm.
+    pub low: Option<DVec3>,
+    pub high: Option<DVec3>,
+}
+
+impl ReadBack {
+    pub fn of(mesh: &Mesh) -> ReadBack {
+        let (topology, (low, high)) = (mesh.topology(), mesh.bounds());
+        ReadBack {
+            volume_mm3: Some(mesh.volume()),
+            watertight: Some(mesh.closure() == Closure::Closed),
+            bodies: Some(topology.bodies),
+            genus: Some(topology.genus),
+            triangles: Some(mesh.triangles.len()),
+            low: Some(low),
+            high: Some(high),
+        }
+    }
+}
+
 /// A part as written.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct PartReport {
@@ -40,15 +69,8 @@ pub struct PartReport {
     pub obj: Option<String>,
     /// The first part with the same solid up to a rigid motion, where there is one before this.
     pub same_as: Option<String>,
-    /// Read back from the file, master's scale.
-    pub volume_mm3: Option<f64>,
-    pub watertight: Option<bool>,
-    pub bodies: Option<usize>,
-    pub genus: Option<i64>,
-    pub triangles: Option<usize>,
-    /// Bounding box of the file, mm.
-    pub low: Option<DVec3>,
-    pub high: Option<DVec3>,
+    #[serde(flatten)]
+    pub read_back: ReadBack,
     /// Before writing, master's scale.
     pub expected_volume_mm3: f64,
     /// Before clearance and scale.

@@ -82,7 +82,9 @@ impl OpenScad {
             ["--hardwarnings", "--export-format", "binstl", "-o"].map(String::from).to_vec();
         arguments.push(out.display().to_string());
         let place = format!("at=[{},{},{}]", at.x, at.y, at.z);
-        for define in [format!("a={}", quoted(a)?), format!("b={}", b.map_or(Ok("\"\"".into()), quoted)?), place] {
+        for define in
+            [format!("a={}", quoted(a)?), format!("b={}", b.map_or(Ok("\"\"".into()), quoted)?), place]
+        {
             arguments.extend(["-D".to_string(), define]);
         }
         arguments.push(self.folder.join("gate.scad").display().to_string());

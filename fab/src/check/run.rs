@@ -50,7 +50,8 @@ fn wait(child: &mut Child, program: &str) -> Result<Option<i32>, Outcome> {
             other => {
                 let _ = child.kill();
                 let _ = child.wait();
-                let why = other.err().map_or(format!("took longer than {} s", LIMIT.as_secs()), |e| e.to_string());
+                let why =
+                    other.err().map_or(format!("took longer than {} s", LIMIT.as_secs()), |e| e.to_string());
                 return Err(Outcome::NotRun(format!("{program}: {why}")));
             }
         }

@@ -7,8 +7,14 @@ use super::{Check, Outcome, check, value_of};
 use std::path::Path;
 
 /// What `--info` counts only where it had to mend something.
-const REPAIRS: [&str; 6] =
-    ["open_edges", "edges_fixed", "degenerate_facets", "facets_removed", "facets_reversed", "backwards_edges"];
+const REPAIRS: [&str; 6] = [
+    "open_edges",
+    "edges_fixed",
+    "degenerate_facets",
+    "facets_removed",
+    "facets_reversed",
+    "backwards_edges",
+];
 
 /// The slicer's name with its version.
 pub fn name(program: &str) -> String {
@@ -30,7 +36,8 @@ fn verdict(program: &str, file: &Path) -> Result<(), Outcome> {
         Some("yes") => {}
         other => return failed(format!("manifold = {}", other.unwrap_or("(not said)"))),
     }
-    let repair = REPAIRS.iter().find_map(|k| value_of(&said, k).filter(|v| *v != "0").map(|v| format!("{k} = {v}")));
+    let repair =
+        REPAIRS.iter().find_map(|k| value_of(&said, k).filter(|v| *v != "0").map(|v| format!("{k} = {v}")));
     match (repair, value_of(&said, "number_of_parts")) {
         (Some(repair), _) => failed(repair),
         (None, Some("1")) => Ok(()),

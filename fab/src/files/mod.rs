@@ -21,9 +21,15 @@ pub struct FileError {
 
 fn hint(cause: &io::Error) -> &'static str {
     match cause.kind() {
-        io::ErrorKind::PermissionDenied | io::ErrorKind::ReadOnlyFilesystem => "choose a folder that you may write to",
-        io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded => "the disk is full; free some space, nothing was left behind",
-        io::ErrorKind::NotADirectory | io::ErrorKind::AlreadyExists => "a file stands where the folder should be",
+        io::ErrorKind::PermissionDenied | io::ErrorKind::ReadOnlyFilesystem => {
+            "choose a folder that you may write to"
+        }
+        io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded => {
+            "the disk is full; free some space, nothing was left behind"
+        }
+        io::ErrorKind::NotADirectory | io::ErrorKind::AlreadyExists => {
+            "a file stands where the folder should be"
+        }
         io::ErrorKind::IsADirectory => "a folder stands where the file should be",
         io::ErrorKind::NotFound => "a folder on the way to it does not exist",
         _ => "nothing was left behind; try another folder",
@@ -42,14 +48,27 @@ pub struct Batch {
 impl Batch {
     /// A batch for a folder, which is made where it is missing.
     pub fn new(folder: &Path) -> Result<Batch, FileError> {
-        let made: Vec<PathBuf> = folder.ancestors().take_while(|p| !p.as_os_str().is_empty() && !p.exists()).map(Path::to_path_buf).collect();
-        let batch = Batch { folder: folder.to_path_buf(), made: made.into_iter().rev().collect(), staged: vec![] };
-        fs::create_dir_all(folder).map_err(|cause| FileError { action: "make folder", path: folder.to_path_buf(), cause })?;
+        let made: Vec<PathBuf> = folder
+            .ancestors()
+            .take_while(|p| !p.as_os_str().is_empty() && !p.exists())
+            .map(Path::to_path_buf)
+            .collect();
+        let batch =
+            Batch { folder: folder.to_path_buf(), made: made.into_iter().rev().collect(), staged: vec![] };
+        fs::create_dir_all(folder).map_err(|cause| FileError {
+            action: "make folder",
+            path: folder.to_path_buf(),
+            cause,
+        })?;
         Ok(batch)
     }
 
     /// Writes a file beside its place; gives the path where it now is.
-    pub fn stage(&mut self, name: &str, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<PathBuf, FileError> {
+    pub fn stage(
+        &mut self,
+        name: &str,
+        write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+    ) -> Result<PathBuf, FileError> {
         let place = self.folder.join(name);
         let beside = self.folder.join(format!(".{name}.part-{}", std::process::id()));
         self.staged.push((beside.clone(), place.clone()));
@@ -73,8 +92,9 @@ impl Batch {
 
     /// Puts all files in their places.
     pub fn commit(mut self) -> Result<(), FileError> {
-        for (_, place) in self.staged.iter().filter(|(_, place)| place.is_dir()) {
-            return Err(FileError { action: "write", path: place.clone(), cause: io::ErrorKind::IsADirectory.into() });
+        if let Some((_, place)) = self.staged.iter().find(|(_, place)| place.is_dir()) {
+            let cause = io::ErrorKind::IsADirectory.into();
+            return Err(FileError { action: "write", path: place.clone(), cause });
         }
         while let Some((beside, place)) = self.staged.first().cloned() {
             fs::rename(&beside, &place).map_err(|cause| FileError { action: "write", path: place, cause })?;
