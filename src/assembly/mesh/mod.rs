@@ -4,6 +4,7 @@
 //! so is refused with all its faults. Not promised: that the surface keeps clear of itself.
 
 mod assemble;
+mod cells;
 mod close;
 mod faults;
 mod flat;
@@ -15,6 +16,7 @@ mod stl;
 mod threemf;
 
 pub use assemble::{MeshAssembly, assemble};
+pub use cells::NoCells;
 pub use faults::{MeshFault, MeshFaults, Place};
 pub(crate) use shells::solid_angle;
 
@@ -104,8 +106,12 @@ fn solid(soup: &Soup, reading: Reading) -> Result<Mesh, Vec<Found>> {
     }
     let normals = flat::normals(&facets, &soup.vertices, width, reading.tolerance);
     let facets = facets.into_iter().zip(normals).map(|(corners, normal)| Facet { corners, normal }).collect();
-    let solid = used_only(Solid { vertices: soup.vertices.clone(), facets, cells: vec![] });
-    let remarks = remarks(&closed);
+    let mut solid = used_only(Solid { vertices: soup.vertices.clone(), facets, cells: vec![] });
+    let mut remarks = remarks(&closed);
+    match cells::cells(&solid, width) {
+        Ok(cells) => solid.cells = cells,
+        Err(why) => remarks.push(format!("no convex cells ({why}): plans are not run for this part")),
+    }
     Ok(Mesh { solid, bodies: closed.bodies, voids: closed.voids, resolution: soup.resolution, remarks })
 }
 
