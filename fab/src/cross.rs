@@ -20,7 +20,10 @@ pub fn within(mesh: &Mesh, tree: &Bvh) -> Vec<Crossing> {
     let mut found = Vec::new();
     pairs((mesh, tree), (mesh, tree), &mut |s, t| {
         if s < t && cross_in_mesh(mesh, s, t) {
-            found.push(Crossing { triangles: (s, t), at: mesh.corners(s as usize).iter().sum::<DVec3>() / 3.0 });
+            found.push(Crossing {
+                triangles: (s, t),
+                at: mesh.corners(s as usize).iter().sum::<DVec3>() / 3.0,
+            });
         }
     });
     found.sort_by_key(|c| c.triangles);
@@ -122,7 +125,9 @@ fn segment_meets_flat([p, q]: [DVec3; 2], [a, b, c]: [DVec3; 3]) -> bool {
         let s = [side2(drop, a, b, x), side2(drop, b, c, x), side2(drop, c, a, x)];
         s.iter().all(|s| *s >= 0.0) || s.iter().all(|s| *s <= 0.0)
     };
-    inside(p) || inside(q) || [[a, b], [b, c], [c, a]].iter().any(|&[x, y]| segments_meet_flat(drop, [p, q], [x, y]))
+    inside(p)
+        || inside(q)
+        || [[a, b], [b, c], [c, a]].iter().any(|&[x, y]| segments_meet_flat(drop, [p, q], [x, y]))
 }
 
 fn segments_meet_flat(drop: usize, [p, q]: [DVec3; 2], [x, y]: [DVec3; 2]) -> bool {

@@ -75,7 +75,9 @@ type Below<'a> = Result<(&'a [u32], &'a [u32]), Vec<(usize, usize)>>;
 
 fn leaves_or_children<'a>(a: &'a Bvh, b: &'a Bvh, i: usize, j: usize) -> Below<'a> {
     match (a.nodes[i], b.nodes[j]) {
-        (Node::Leaf { first, count }, Node::Leaf { first: f, count: c }) => Ok((a.leaf(first, count), b.leaf(f, c))),
+        (Node::Leaf { first, count }, Node::Leaf { first: f, count: c }) => {
+            Ok((a.leaf(first, count), b.leaf(f, c)))
+        }
         (Node::Branch { left, right }, Node::Leaf { .. }) => Err(vec![(left, j), (right, j)]),
         (Node::Leaf { .. }, Node::Branch { left, right }) => Err(vec![(i, left), (i, right)]),
         (Node::Branch { left, right }, Node::Branch { left: l, right: r }) => {

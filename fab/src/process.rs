@@ -156,8 +156,14 @@ impl Process {
                 Some(step) => replace(&mut step.shrinkage, value, SHRINKAGE, name, &mut faults),
                 None => faults.push(FileFault {
                     line: 0,
-                    what: format!("shrinkage is given for a step \"{name}\" that {} does not have", self.name),
-                    hint: format!("its steps: {}", self.steps.iter().map(|s| &s.name[..]).collect::<Vec<_>>().join(", ")),
+                    what: format!(
+                        "shrinkage is given for a step \"{name}\" that {} does not have",
+                        self.name
+                    ),
+                    hint: format!(
+                        "its steps: {}",
+                        self.steps.iter().map(|s| &s.name[..]).collect::<Vec<_>>().join(", ")
+                    ),
                 }),
             }
         }
@@ -172,7 +178,8 @@ fn replace(figure: &mut Figure, value: f64, kind: Kind, name: &str, faults: &mut
         faults.push(FileFault { line: 0, what, hint: range_hint(kind) });
     }
     let (low, high) = (figure.low.min(value), figure.high.max(value));
-    *figure = Figure { value, unit: kind.unit, low, high, source: "given by the user".into(), grade: Grade::User };
+    *figure =
+        Figure { value, unit: kind.unit, low, high, source: "given by the user".into(), grade: Grade::User };
 }
 
 fn range_hint(kind: Kind) -> String {
@@ -186,7 +193,10 @@ fn read(top: &mut Cursor) -> Process {
         clearance: figure(top, "clearance", CLEARANCE),
         least_wall: figure(top, "least_wall", WALL),
         density: figure(top, "density", DENSITY),
-        steps: top.each("step", |step| Step { name: step.text("name"), shrinkage: figure(step, "shrinkage", SHRINKAGE) }),
+        steps: top.each("step", |step| Step {
+            name: step.text("name"),
+            shrinkage: figure(step, "shrinkage", SHRINKAGE),
+        }),
     };
     top.refuse_others("a process has name, title, clearance, least_wall, density and [[step]]");
     process
@@ -194,7 +204,8 @@ fn read(top: &mut Cursor) -> Process {
 
 fn figure(at: &mut Cursor, key: &'static str, kind: Kind) -> Figure {
     at.table(key, |t| {
-        let [value, low, high] = ["value", "low", "high"].map(|k| t.number_in(k, kind.least, kind.most, kind.unit));
+        let [value, low, high] =
+            ["value", "low", "high"].map(|k| t.number_in(k, kind.least, kind.most, kind.unit));
         t.text_of("unit", &[kind.unit]);
         let grade = match t.text_of("grade", &["S", "2", "I", "M"]).as_str() {
             "S" => Grade::S,
@@ -204,7 +215,11 @@ fn figure(at: &mut Cursor, key: &'static str, kind: Kind) -> Figure {
         };
         let figure = Figure { value, unit: kind.unit, low, high, source: t.text("source"), grade };
         if !(low <= value && value <= high) && [low, value, high].iter().all(|x| x.is_finite()) {
-            t.fault("value", format!("{key}: low {low}, value {value}, high {high} are not in order"), "low <= value <= high");
+            t.fault(
+                "value",
+                format!("{key}: low {low}, value {value}, high {high} are not in order"),
+                "low <= value <= high",
+            );
         }
         t.refuse_others("a figure has value, unit, low, high, source and grade");
         figure

@@ -40,9 +40,19 @@ impl<'a> Cursor<'a> {
         let (table, errors) = DeTable::parse_recoverable(text);
         for e in &errors {
             let line = e.span().map_or(1, |s| line_of(text, s.start));
-            faults.push(FileFault { line, what: e.message().to_string(), hint: "the file is to be TOML".into() });
+            faults.push(FileFault {
+                line,
+                what: e.message().to_string(),
+                hint: "the file is to be TOML".into(),
+            });
         }
-        errors.is_empty().then(|| Cursor { text, table: Some(table.into_inner()), line: 1, asked: vec![], faults })
+        errors.is_empty().then(|| Cursor {
+            text,
+            table: Some(table.into_inner()),
+            line: 1,
+            asked: vec![],
+            faults,
+        })
     }
 
     pub fn fault(&mut self, key: &str, what: String, hint: &str) {
@@ -98,7 +108,8 @@ impl<'a> Cursor<'a> {
     /// A table below this one, read by `f`.
     pub fn table<T>(&mut self, key: &'static str, f: impl FnOnce(&mut Cursor) -> T) -> T {
         self.asked.push(key);
-        let found = self.get(key).map(|v| (line_of(self.text, v.span().start), v.get_ref().as_table().cloned()));
+        let found =
+            self.get(key).map(|v| (line_of(self.text, v.span().start), v.get_ref().as_table().cloned()));
         match &found {
             None => self.missing(key, "a table"),
             Some((_, None)) => self.fault(key, format!("\"{key}\" is not a table"), "a table"),
@@ -113,9 +124,10 @@ impl<'a> Cursor<'a> {
         self.asked.push(key);
         let hint = format!("at least one [[{key}]]");
         let rows: Vec<(usize, Option<DeTable>)> = match self.get(key).map(|v| v.get_ref().as_array()) {
-            Some(Some(rows)) => {
-                rows.iter().map(|r| (line_of(self.text, r.span().start), r.get_ref().as_table().cloned())).collect()
-            }
+            Some(Some(rows)) => rows
+                .iter()
+                .map(|r| (line_of(self.text, r.span().start), r.get_ref().as_table().cloned()))
+                .collect(),
             _ => vec![],
         };
         if rows.is_empty() || rows.iter().any(|(_, t)| t.is_none()) {
@@ -123,7 +135,9 @@ impl<'a> Cursor<'a> {
         }
         rows.into_iter()
             .filter(|(_, table)| table.is_some())
-            .map(|(line, table)| f(&mut Cursor { text: self.text, table, line, asked: vec![], faults: self.faults }))
+            .map(|(line, table)| {
+                f(&mut Cursor { text: self.text, table, line, asked: vec![], faults: self.faults })
+            })
             .collect()
     }
 
@@ -136,7 +150,11 @@ impl<'a> Cursor<'a> {
             .map(|(k, _)| (line_of(self.text, k.span().start), k.get_ref().to_string()))
             .collect();
         for (line, key) in others {
-            self.faults.push(FileFault { line, what: format!("unknown key \"{key}\""), hint: hint.to_string() });
+            self.faults.push(FileFault {
+                line,
+                what: format!("unknown key \"{key}\""),
+                hint: hint.to_string(),
+            });
         }
     }
 }

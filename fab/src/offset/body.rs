@@ -53,8 +53,12 @@ const SAME_DIRECTION: f64 = 1e-6;
 
 impl Body {
     pub fn new(shape: &Shape, contact: &[bool], depth: f64) -> Body {
-        let moved: Vec<Moved> =
-            shape.facets.iter().zip(contact).map(|(f, &c)| Moved { plane: moved_plane(shape, f, c, depth), contact: c }).collect();
+        let moved: Vec<Moved> = shape
+            .facets
+            .iter()
+            .zip(contact)
+            .map(|(f, &c)| Moved { plane: moved_plane(shape, f, c, depth), contact: c })
+            .collect();
         let mut triangles = Vec::new();
         let mut facet = Vec::new();
         for (k, f) in shape.facets.iter().enumerate() {
@@ -63,8 +67,11 @@ impl Body {
                 facet.push(k as u32);
             }
         }
-        let mut corners: Vec<Corner> =
-            shape.vertices.iter().map(|&v| Corner { anchor: v, facets: vec![], at: v, placed: true }).collect();
+        let mut corners: Vec<Corner> = shape
+            .vertices
+            .iter()
+            .map(|&v| Corner { anchor: v, facets: vec![], at: v, placed: true })
+            .collect();
         for (k, f) in shape.facets.iter().enumerate() {
             f.corners.iter().for_each(|&c| corners[c as usize].facets.push(k as u32));
         }
@@ -85,7 +92,11 @@ impl Body {
     /// The point nearest to `anchor` under the moved planes of `facets`. Kept facets stay planes where they leave room.
     pub fn place(&self, facets: &[u32], anchor: DVec3) -> Option<DVec3> {
         let planes = |contact: bool| {
-            facets.iter().map(|&f| self.moved[f as usize]).filter(move |m| m.contact == contact).map(|m| m.plane)
+            facets
+                .iter()
+                .map(|&f| self.moved[f as usize])
+                .filter(move |m| m.contact == contact)
+                .map(|m| m.plane)
         };
         let contacts: Vec<HalfSpace> = planes(true).collect();
         let kept = distinct(planes(false));
@@ -133,8 +144,9 @@ impl Body {
     /// Facets that still have a triangle around `u` and `w` once these are one, ascending.
     pub fn facets_left(&self, u: u32, w: u32) -> Vec<u32> {
         let star = |c: u32| self.star[c as usize].iter();
-        let lives =
-            |t: &&u32| self.triangles[**t as usize].is_some_and(|tri| !(tri.contains(&u) && tri.contains(&w)));
+        let lives = |t: &&u32| {
+            self.triangles[**t as usize].is_some_and(|tri| !(tri.contains(&u) && tri.contains(&w)))
+        };
         let mut facets: Vec<u32> =
             star(u).chain(star(w)).filter(lives).map(|&t| self.facet[t as usize]).collect();
         facets.sort_unstable();
@@ -181,7 +193,7 @@ impl Body {
         for c in &mut body.corners {
             (c.anchor, c.at) = (pose.transform_point3(c.anchor), pose.transform_point3(c.at));
         }
-        let shift = DVec3::from(pose.translation);
+        let shift = pose.translation;
         for m in &mut body.moved {
             let normal = pose.transform_vector3(m.plane.normal);
             m.plane = HalfSpace { normal, offset: m.plane.offset + normal.dot(shift) };
@@ -236,7 +248,8 @@ fn triangulate(vertices: &[DVec3], f: &Facet) -> Vec<[u32; 3]> {
             [left[(k + n - 1) % n], left[k], left[(k + 1) % n]]
         };
         let shape = |k: usize| roundness(ear(k).map(|c| vertices[c as usize]), f.normal);
-        let best = (0..left.len()).max_by(|&a, &b| shape(a).total_cmp(&shape(b)).then(b.cmp(&a))).unwrap_or(0);
+        let best =
+            (0..left.len()).max_by(|&a, &b| shape(a).total_cmp(&shape(b)).then(b.cmp(&a))).unwrap_or(0);
         out.push(ear(best));
         left.remove(best);
     }

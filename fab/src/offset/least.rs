@@ -41,7 +41,8 @@ fn nearest_by_choice(from: DVec3, on: &[HalfSpace], within: &[HalfSpace], slack:
     let mut best: Option<(f64, DVec3)> = None;
     let mut consider = |rows: &[HalfSpace]| {
         let Some(x) = onto(from, rows) else { return };
-        let feasible = within.iter().all(|h| h.excess(x) <= slack) && on.iter().all(|h| h.excess(x).abs() <= slack);
+        let feasible =
+            within.iter().all(|h| h.excess(x) <= slack) && on.iter().all(|h| h.excess(x).abs() <= slack);
         let far = x.distance_squared(from);
         if feasible && best.is_none_or(|(d, _)| far < d) {
             best = Some((far, x));
@@ -114,7 +115,8 @@ mod tests {
 
     #[test]
     fn a_kept_plane_is_kept() {
-        let x = nearest(DVec3::ZERO, &[below([0., 0., 1.], 0.0)], &[below([1., 0., 1.], -0.2)], 1e-12).unwrap();
+        let x =
+            nearest(DVec3::ZERO, &[below([0., 0., 1.], 0.0)], &[below([1., 0., 1.], -0.2)], 1e-12).unwrap();
         assert!(x.distance(DVec3::new(-0.2 * 2f64.sqrt(), 0.0, 0.0)) < 1e-12);
     }
 

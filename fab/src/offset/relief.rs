@@ -43,12 +43,14 @@ pub fn relieve(bodies: &mut [Body], aim: &Aim) -> Vec<Option<Settled>> {
         if pushes.iter().all(BTreeMap::is_empty) {
             break;
         }
-        bodies.par_iter_mut().zip(&mut surfaces).zip(&mut done).zip(&pushes).for_each(|(((b, s), d), pushes)| {
-            if !pushes.is_empty() {
-                *d = Some(apply(b, pushes, aim.thinnest, d.take().unwrap_or_default()));
-                *s = surface(b);
-            }
-        });
+        bodies.par_iter_mut().zip(&mut surfaces).zip(&mut done).zip(&pushes).for_each(
+            |(((b, s), d), pushes)| {
+                if !pushes.is_empty() {
+                    *d = Some(apply(b, pushes, aim.thinnest, d.take().unwrap_or_default()));
+                    *s = surface(b);
+                }
+            },
+        );
     }
     done
 }
@@ -86,8 +88,20 @@ fn all_pushes(surfaces: &[Surface], aim: &Aim) -> Vec<BTreeMap<u32, Push>> {
         for c in close {
             let lack = aim.depth - c.near.distance / 2.0;
             let Some(towards_b) = (c.near.b - c.near.a).try_normalize() else { continue };
-            share(&surfaces[i], c.triangles.0, c.near.a, Push { outward: towards_b, by: lack }, &mut pushes[i]);
-            share(&surfaces[j], c.triangles.1, c.near.b, Push { outward: -towards_b, by: lack }, &mut pushes[j]);
+            share(
+                &surfaces[i],
+                c.triangles.0,
+                c.near.a,
+                Push { outward: towards_b, by: lack },
+                &mut pushes[i],
+            );
+            share(
+                &surfaces[j],
+                c.triangles.1,
+                c.near.b,
+                Push { outward: -towards_b, by: lack },
+                &mut pushes[j],
+            );
         }
     }
     pushes
