@@ -8,8 +8,8 @@ mod polytope;
 
 use super::shells::solid_angle;
 use crate::solid::{Cell, Facet, Solid};
-use glam::DVec3;
-use polytope::{Plane, cuboid, halves, height, measure};
+use glam::{DVec2, DVec3};
+use polytope::{Plane, cuboid, halves, height, hull, measure};
 use std::collections::BTreeMap;
 
 /// More pieces than this, in or out, are not made: the planner pairs the cells of two parts.
@@ -73,13 +73,22 @@ fn whole(solid: &Solid, planes: &[Plane], width: f64) -> Option<Cell> {
         faces.entry(key).or_insert((*p, Vec::new())).1.extend(&f.corners);
     }
     let mut cell = Cell { vertices: solid.vertices.clone(), ..Cell::default() };
-    for (plane, mut ring) in faces.into_values() {
-        ring.sort_unstable();
-        ring.dedup();
-        cell.facets.push(polytope::around(&solid.vertices, ring, plane.0));
+    for (plane, corners) in faces.into_values() {
+        cell.facets.push(rim(&solid.vertices, corners, plane.0, width));
         cell.planes.push(plane);
     }
-    Some(cell)
+    Some(polytope::used_only(cell))
+}
+
+/// The corners of a convex face cut into facets, without those inside it or on its sides.
+fn rim(points: &[DVec3], mut corners: Vec<u32>, normal: DVec3, width: f64) -> Vec<u32> {
+    corners.sort_unstable();
+    corners.dedup();
+    let (u, v) = normal.any_orthonormal_pair();
+    let o = points[corners[0] as usize];
+    let flat = |&i: &u32| DVec2::new((points[i as usize] - o).dot(u), (points[i as usize] - o).dot(v));
+    let hull = hull(&corners.iter().map(flat).collect::<Vec<_>>(), width);
+    hull.into_iter().map(|k| corners[k]).collect()
 }
 
 /// A stretch of the boundary inside a piece.

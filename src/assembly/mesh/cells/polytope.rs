@@ -4,7 +4,7 @@
 //! round-off for the corners that a cut makes.
 
 use crate::solid::Cell;
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 use std::collections::BTreeMap;
 
 /// Unit normal and offset: inside is `n . x <= d`.
@@ -63,7 +63,7 @@ fn half(cell: &Cell, plane: Plane, heights: &[f64], width: f64) -> Option<Cell> 
         made.out.facets.push(lid);
         made.out.planes.push(plane);
     }
-    (made.out.facets.len() > 3).then_some(made.out)
+    (made.out.facets.len() > 3).then(|| used_only(made.out))
 }
 
 /// A half in the making; `new` numbers its corners by the old corner or the cut edge that they come from.
@@ -126,6 +126,55 @@ pub(super) fn around(points: &[DVec3], mut ring: Vec<u32>, normal: DVec3) -> Vec
     };
     ring.sort_by(|&i, &j| angle(i).total_cmp(&angle(j)).then(i.cmp(&j)));
     ring
+}
+
+/// Convex hull of points in the plane, counter-clockwise, as indices; corners that jut out by no more than `width` are
+/// left out.
+pub(super) fn hull(p: &[DVec2], width: f64) -> Vec<usize> {
+    let mut order: Vec<usize> = (0..p.len()).collect();
+    order.sort_by(|&i, &j| p[i].x.total_cmp(&p[j].x).then(p[i].y.total_cmp(&p[j].y)));
+    let mut ring = chain(p, order.iter().copied());
+    ring.extend(chain(p, order.iter().rev().copied()));
+    let mut k = 0;
+    while ring.len() > 3 && k < ring.len() {
+        let [a, b, c] = [k + ring.len() - 1, k, k + 1].map(|k| p[ring[k % ring.len()]]);
+        if (b - a).perp_dot(c - a) <= width * a.distance(c) {
+            ring.remove(k);
+        } else {
+            k += 1;
+        }
+    }
+    ring
+}
+
+/// Lower chain of a hull without its last point.
+fn chain(p: &[DVec2], order: impl Iterator<Item = usize>) -> Vec<usize> {
+    let mut c: Vec<usize> = Vec::new();
+    for i in order {
+        while let [.., a, b] = c[..] {
+            if (p[b] - p[a]).perp_dot(p[i] - p[a]) > 0.0 {
+                break;
+            }
+            c.pop();
+        }
+        c.push(i);
+    }
+    c.pop();
+    c
+}
+
+/// The cell without corners that no facet uses.
+pub(super) fn used_only(cell: Cell) -> Cell {
+    let mut new = vec![u32::MAX; cell.vertices.len()];
+    let mut out = Cell { vertices: Vec::new(), ..cell };
+    for i in out.facets.iter_mut().flatten() {
+        if new[*i as usize] == u32::MAX {
+            new[*i as usize] = out.vertices.len() as u32;
+            out.vertices.push(cell.vertices[*i as usize]);
+        }
+        *i = new[*i as usize];
+    }
+    out
 }
 
 /// Volume and surface of a cell.
