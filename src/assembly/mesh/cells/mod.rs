@@ -4,7 +4,7 @@
 //! or all out. A convex solid is its own one cell. Cost: cells grow with the square of the reflex faces at worst; beyond
 //! [`MOST`] it is given up. Promised: the cells' volumes add up to the solid's (checked). Not promised: fewest cells.
 
-mod polytope;
+pub(crate) mod polytope;
 
 use super::shells::solid_angle;
 use crate::solid::{Cell, Facet, Solid};

@@ -8,9 +8,9 @@ use glam::{DVec2, DVec3};
 use std::collections::BTreeMap;
 
 /// Unit normal and offset: inside is `n . x <= d`.
-pub(super) type Plane = (DVec3, f64);
+pub(crate) type Plane = (DVec3, f64);
 
-pub(super) fn height((n, d): Plane, p: DVec3) -> f64 {
+pub(crate) fn height((n, d): Plane, p: DVec3) -> f64 {
     n.dot(p) - d
 }
 
@@ -31,7 +31,7 @@ pub(super) fn cuboid(lo: DVec3, hi: DVec3) -> Cell {
 }
 
 /// The parts of the cell below and above the plane; a missing one has no corner beyond `width`.
-pub(super) fn halves(cell: &Cell, plane: Plane, width: f64) -> (Option<Cell>, Option<Cell>) {
+pub(crate) fn halves(cell: &Cell, plane: Plane, width: f64) -> (Option<Cell>, Option<Cell>) {
     let heights: Vec<f64> = cell.vertices.iter().map(|&p| height(plane, p)).collect();
     let above = heights.iter().any(|&h| h > width);
     let below = heights.iter().any(|&h| h < -width);
