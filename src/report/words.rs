@@ -5,6 +5,7 @@
 use super::content::{Chapter, Column, Table, Tone};
 use crate::assembly::{Assembly, PartIx};
 use crate::locking::{Check, Freedom, Motion, Stress, Twist, Verdict};
+use crate::sequence::{Outcome, Plan, Straight};
 use glam::DVec3;
 
 /// Does it lock, and how do we know?
@@ -87,6 +88,65 @@ fn free(assembly: &Assembly, motion: &Motion) -> Chapter {
             rows: rows.collect(),
         }],
         ..Chapter::default()
+    }
+}
+
+/// How does it go together? Steps are told in the order of assembly.
+pub fn plan<C>(assembly: &Assembly, plan: &Plan<C>) -> Chapter {
+    let stuck = plan.stuck.iter().map(|s| s.parts.join(", ")).collect::<Vec<_>>().join("; and ");
+    let (tone, headline, words) = match plan.outcome {
+        Outcome::Assembled => {
+            let moves =
+                if plan.steps.len() == 1 { "one move".into() } else { format!("{} moves", plan.steps.len()) };
+            (Tone::Good, format!("It goes together: {moves}, straight and without force."), vec![])
+        }
+        Outcome::NeedsFlexible => (
+            Tone::Bad,
+            "Not from rigid parts: something must bend.".into(),
+            vec![format!(
+                "Locked by themselves: {stuck}. No motion can start there, so no order of rigid moves takes these parts \
+                 apart or puts them together at zero clearance."
+            )],
+        ),
+        Outcome::NotFound => {
+            let excluded = plan.stuck.iter().all(|s| s.straight_moves == Straight::None);
+            let why = if excluded {
+                "No group of them can leave by one straight move; turns, and moves that stop half way, were not tried."
+            } else {
+                "The search gave up before every straight move was excluded."
+            };
+            let found = vec![format!("These stayed together: {stuck}. {why}")];
+            (Tone::Undecided, "No plan found, and none excluded.".into(), found)
+        }
+    };
+    let searched =
+        format!("{} sets, {} directions", thousands(plan.searched.sets), thousands(plan.searched.directions));
+    let touch = format!("overlap up to {} mm", scientific(plan.touch * assembly.mm_per_unit));
+    let tables = if plan.steps.is_empty() { vec![] } else { vec![steps(assembly, plan)] };
+    Chapter {
+        tone,
+        headline,
+        words,
+        facts: vec![fact("searched", searched), fact("counts as touching", touch)],
+        tables,
+        ..Chapter::default()
+    }
+}
+
+fn steps<C>(assembly: &Assembly, plan: &Plan<C>) -> Table {
+    let rows = plan.steps.iter().rev().zip(1..).map(|(s, k)| {
+        let toward = s.direction.map(|c| decimal(-c));
+        let lengths = [s.distance_mm, s.clear * assembly.mm_per_unit].map(|l| format!("{l:.2}"));
+        let ends = [vec![k.to_string(), s.parts.join(", ")], vec![s.stays.join(", ")]];
+        [&ends[0], toward.as_slice(), &lengths, &ends[1]].concat()
+    });
+    let numbers = ["along x", "y", "z", "length, mm", "kept, mm"].map(Column::numbers);
+    let head = [Column::numbers("step"), Column::words("parts")].into_iter().chain(numbers);
+    Table {
+        caption: "Moves in the order of assembly; kept: the least distance on the way, 0 where parts slide"
+            .into(),
+        head: head.chain([Column::words("onto")]).collect(),
+        rows: rows.collect(),
     }
 }
 

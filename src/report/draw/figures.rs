@@ -7,10 +7,12 @@ use super::glyph;
 use super::image::Size;
 use super::palette::{self, Colour};
 use super::render;
-use super::scene::{Item, Opacity, Scene};
+use super::scene::{Item, Opacity, Scene, middle};
 use crate::assembly::{Assembly, PartIx};
 use crate::locking::{Motion, Stress};
 use crate::report::content::{Format, Picture};
+use crate::report::words::movers;
+use crate::sequence::Step;
 use glam::DVec3;
 use std::io;
 
@@ -101,6 +103,7 @@ pub fn plan_view(assembly: &Assembly) -> Figure {
 
 /// A motion that can start: an arrow for each part that moves, at its reference point.
 pub fn moving(assembly: &Assembly, motion: &Motion) -> Figure {
+    let movers = movers(motion);
     let mut scene = faint(assembly);
     let size = extent(&scene) * 0.3;
     // Twists are drawn to one scale; the fastest point a part's own size away fills a sign.
@@ -125,6 +128,32 @@ pub fn moving(assembly: &Assembly, motion: &Motion) -> Figure {
             ids.join(", ")
         ),
         caption: "The motion that can start: straight arrows shift, bent arrows turn.".into(),
+    }
+}
+
+/// One move of a plan as it is put together: the moved parts where they come from, with an arrow for their way, and
+/// the parts that they join in place. Parts of other moves are left out, yet the view is that of all.
+pub fn step(assembly: &Assembly, step: &Step) -> Figure {
+    let mut scene = Scene::of(assembly, View::default());
+    let away = DVec3::from_array(step.direction) * step.distance;
+    let size = extent(&scene);
+    let mut signs = Vec::new();
+    for (part, item) in assembly.parts.iter().zip(&mut scene.items) {
+        if step.parts.contains(&part.id) {
+            let from = middle(item) + away;
+            signs.extend(glyph::arrow(from, from - away.normalize_or_zero() * size * 0.4, size * 0.015));
+            item.offset = away;
+        } else if !step.stays.contains(&part.id) {
+            item.opacity = Opacity::Hidden;
+        }
+    }
+    scene.items.extend(signs.iter().map(|s| Item::sign(s, Colour::srgb(palette::MOTION))));
+    let moved = step.parts.join(", ");
+    Figure {
+        name: "step",
+        alt: format!("{moved} on the way to {}, with an arrow.", step.stays.join(", ")),
+        caption: format!("{moved}: {:.1} mm straight in.", step.distance_mm),
+        scene,
     }
 }
 
