@@ -7,7 +7,7 @@
 
 use super::ini::{Entry, Ini, STRICT, Section};
 use super::{Draft, MAX_DRAFT, Origin, Weave};
-use crate::fault::{Fault, Faults, Place};
+use crate::fault::{Fault, Faults, Place, quoted};
 use std::path::Path;
 
 /// Shafts, and treadles, that a file may use: as many as a draft of [`MAX_DRAFT`] different columns or rows needs.
@@ -92,7 +92,7 @@ impl Reader {
     fn rising(&mut self, ini: &Ini) -> bool {
         let Some(entry) = ini.section("weaving").and_then(|s| s.entry("rising shed")) else { return true };
         yes_no(&entry.value).unwrap_or_else(|| {
-            let what = format!("Rising Shed is {:?}", entry.value);
+            let what = format!("Rising Shed is {}", quoted(&entry.value));
             self.fault(
                 Some(entry.line),
                 what,
@@ -111,7 +111,8 @@ impl Reader {
         match entry.value.parse() {
             Ok(n) if (1..=most).contains(&n) => Some(n),
             _ => {
-                let what = format!("{key} in [{section}] is {:?}, but it must be 1 to {most}", entry.value);
+                let what =
+                    format!("{key} in [{section}] is {}, but it must be 1 to {most}", quoted(&entry.value));
                 self.fault(Some(entry.line), what, "a whole number; of a larger cloth export one repeat");
                 None
             }
@@ -139,7 +140,8 @@ impl Reader {
         for entry in &section.entries {
             let row = entry.key.parse().ok().filter(|row| (1..=sets.len()).contains(row));
             let Some(row) = row else {
-                let what = format!("[{name}] has a line for {:?}, but counts 1 to {}", entry.key, sets.len());
+                let what =
+                    format!("[{name}] has a line for {}, but counts 1 to {}", quoted(&entry.key), sets.len());
                 self.fault(
                     Some(entry.line),
                     what,
@@ -159,8 +161,11 @@ impl Reader {
                 Ok(0) => {}
                 Ok(n) if n <= most => set[(n - 1) / 64] |= 1 << ((n - 1) % 64),
                 _ => {
-                    let what =
-                        format!("[{section}] line {}: {word:?} is not a number up to {most}", entry.key);
+                    let what = format!(
+                        "[{section}] line {}: {} is not a number up to {most}",
+                        quoted(&entry.key),
+                        quoted(word)
+                    );
                     self.fault(
                         Some(entry.line),
                         what,
