@@ -13,7 +13,7 @@ use std::collections::BTreeMap;
 use std::ops::Bound::{Excluded, Included};
 use std::path::{Path, PathBuf};
 
-/// Taken where [contact] is absent, in mm.
+/// Taken where `[contact]` is absent, in mm.
 const DEFAULT_TOLERANCE_MM: f64 = 0.001;
 
 /// Largest tolerance and largest shift of a pose, in mm and in the file's unit: a kilometre.

@@ -1,9 +1,9 @@
 //! Takes a Weaving Information File (version 1.1); gives the draft it weaves, or all that is wrong with it.
 //!
 //! Row j = 0 of the draft is the first pick, column i = 0 the first warp thread; where the shed raises the warp, the
-//! weft passes under. A liftplan goes before treadling and tie-up, as the format says, unless [CONTENTS] denies it. Threads and picks without an
-//! entry, and the entry 0, stand for none. Not promised: colours, spacing, thickness and private sections are not
-//! read; where one thread runs through several shafts, any of them moves it.
+//! weft passes under. A liftplan goes before treadling and tie-up, as the format says, unless `[CONTENTS]` denies it.
+//! Threads and picks without an entry, and the entry 0, stand for none. Not promised: colors, spacing, thickness and
+//! private sections are not read; where one thread runs through several shafts, any of them moves it.
 
 use super::ini::{Entry, Ini, STRICT, Section};
 use super::{Draft, MAX_DRAFT, Origin, Weave};
@@ -78,7 +78,7 @@ impl Reader {
         });
     }
 
-    /// Sections that [CONTENTS] promises must stand in the file, as far as the draft needs them.
+    /// Sections that `[CONTENTS]` promises must stand in the file, as far as the draft needs them.
     fn contents(&mut self, ini: &Ini) {
         let Some(contents) = ini.section("contents") else { return };
         for entry in contents.entries.iter().filter(|entry| STRICT.contains(&entry.key.as_str())) {
@@ -198,7 +198,7 @@ impl Reader {
     }
 }
 
-/// Whether a liftplan stands in the file and [CONTENTS] does not deny it.
+/// Whether a liftplan stands in the file and `[CONTENTS]` does not deny it.
 fn has_liftplan(ini: &Ini) -> bool {
     let said = ini.section("contents").and_then(|contents| contents.entry("liftplan"));
     let denied = said.and_then(|entry| yes_no(&entry.value)) == Some(false);
@@ -228,7 +228,7 @@ fn yes_no(word: &str) -> Option<bool> {
 
 /// The draft as a WIF that reads back as the same draft: equal columns share a shaft, equal rows a treadle.
 ///
-/// `title` goes into its [TEXT] section; line breaks in it become spaces.
+/// `title` goes into its `[TEXT]` section; line breaks in it become spaces.
 pub fn to_wif(draft: &Draft, title: &str) -> String {
     let rows = draft.rows();
     let column = |i: usize| rows.iter().map(|row| row.as_bytes()[i]).collect::<Vec<u8>>();
