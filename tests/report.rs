@@ -142,6 +142,26 @@ fn the_nearer_part_covers_the_farther_and_its_outline_is_inked() {
 }
 
 #[test]
+fn of_two_faces_in_one_plane_the_first_shows() {
+    let mut second = item(&block(2.0, 1.0, 3.0), BLUE);
+    second.offset = DVec3::new(-1.0, 0.0, -2.0);
+    let mut tilted = scene(vec![item(&block(1.0, 1.0, 1.0), RED), second]);
+    // A motion whose round-off takes the faces out of their common plane.
+    let by = DAffine3::from_axis_angle(DVec3::new(0.3, -0.7, 0.65).normalize(), 0.1);
+    tilted.items.iter_mut().for_each(|i| {
+        i.pose = by * DAffine3::from_translation(i.offset);
+        i.offset = DVec3::ZERO;
+    });
+    let alone =
+        scene(vec![tilted.items[0].clone(), Item { opacity: Opacity::Hidden, ..tilted.items[1].clone() }]);
+    let red = |p: [u8; 4]| p[3] == 255 && p[0] > 2 * p[2].max(30);
+    let count = |s: &Scene| pixels(&draw(s)).filter(|(_, _, p)| red(*p)).count();
+    // All three sides seen of the small block lie in sides of the large one; all of them must show.
+    let (both, one) = (count(&tilted), count(&alone));
+    assert!(one > 200 && both * 10 > one * 9, "{both} of {one}");
+}
+
+#[test]
 fn a_hidden_part_leaves_room_and_a_ghost_lets_light_through() {
     let with = |opacity| {
         let mut part = item(&block(1.0, 1.0, 1.0), RED);
