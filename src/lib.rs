@@ -8,6 +8,7 @@
 
 pub mod assembly;
 pub mod blocking;
+pub mod chirality;
 pub mod contact;
 pub mod fault;
 pub mod input;
