@@ -7,6 +7,7 @@
 //! ```
 
 pub mod assembly;
+pub mod atlas;
 pub mod blocking;
 pub mod chirality;
 pub mod cli;
