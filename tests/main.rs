@@ -1,4 +1,5 @@
 mod bad_input;
+mod hands;
 mod mesh;
 mod pages;
 mod plan;

@@ -60,7 +60,7 @@ pub fn tiles(weave: &Weave, swatch: Swatch) -> Vec<Piece> {
 }
 
 /// The first crossing at or after 0 where the strand comes up; 0 where it never does.
-fn first_cut(weave: &Weave, strand: Strand) -> i32 {
+pub fn first_cut(weave: &Weave, strand: Strand) -> i32 {
     let period = weave.draft.period(strand.kind) as i32;
     let rises = |&c: &i32| weave.draft.is_over(strand, c) && !weave.draft.is_over(strand, c - 1);
     (0..period).find(rises).unwrap_or(0)
