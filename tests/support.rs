@@ -4,6 +4,7 @@ use std::path::Path;
 use weavelock::assembly::{Assembly, PartIx};
 use weavelock::contact::{Joined, Origin, Patch, join};
 use weavelock::locking::{Check, check};
+use weavelock::report::answer::Source;
 use weavelock::spec::{Syntax, parse};
 
 /// The file of a woven assembly with the known answers' profile; `layout` is its last tables.
@@ -92,4 +93,8 @@ impl Dice {
         (1..n).rev().for_each(|k| order.swap(k, self.below(k + 1)));
         order
     }
+}
+
+pub fn source(file: &str, text: &str) -> Source {
+    Source { file: file.into(), text: text.into() }
 }

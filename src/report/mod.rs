@@ -9,3 +9,4 @@ pub mod draw;
 pub mod file;
 pub mod page;
 pub mod text;
+pub mod words;

@@ -193,7 +193,7 @@ impl Body {
         for c in &mut body.corners {
             (c.anchor, c.at) = (pose.transform_point3(c.anchor), pose.transform_point3(c.at));
         }
-        let shift = DVec3::from(pose.translation);
+        let shift = pose.translation;
         for m in &mut body.moved {
             let normal = pose.transform_vector3(m.plane.normal);
             m.plane = HalfSpace { normal, offset: m.plane.offset + normal.dot(shift) };

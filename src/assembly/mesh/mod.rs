@@ -3,6 +3,7 @@
 //! Promised: closed, outward, no face twice, vertices welded by identity, facets planar and convex; a file that is not
 //! so is refused with all its faults. Not promised: that the surface keeps clear of itself.
 
+mod assemble;
 mod close;
 mod faults;
 mod flat;
@@ -13,6 +14,7 @@ mod soup;
 mod stl;
 mod threemf;
 
+pub use assemble::{MeshAssembly, assemble};
 pub use faults::{MeshFault, MeshFaults, Place};
 pub(crate) use shells::solid_angle;
 
@@ -128,6 +130,8 @@ fn remarks(c: &close::Closed) -> Vec<String> {
     let tees =
         (c.t_junctions > 0).then(|| format!("{} vertices stood on the edge of a neighbor", c.t_junctions));
     let dropped = (c.dropped > 0).then(|| format!("{} faces without area were passed over", c.dropped));
+    let walls =
+        (c.walls > 0).then(|| format!("{} walls inside, a face and its reverse, were taken out", c.walls));
     let touch = (c.touching_edges > 0).then(|| format!("touches itself along {} edges", c.touching_edges));
-    [several, hollow, tees, dropped, touch].into_iter().flatten().collect()
+    [several, hollow, tees, dropped, walls, touch].into_iter().flatten().collect()
 }
