@@ -11,7 +11,7 @@ use parry3d_f64::partitioning::{Bvh, BvhBuildStrategy};
 use std::collections::BTreeMap;
 
 /// So many faults of one kind are listed one by one; the rest is counted.
-const LISTED: usize = 20;
+pub(super) const LISTED: usize = 20;
 
 /// Corner rings of faces, and which faces hang together.
 #[derive(Clone, Debug, Default)]
