@@ -59,7 +59,7 @@ fn fixtures() -> BTreeMap<String, PathBuf> {
 #[test]
 fn every_fixture_has_its_verdict_and_a_twin_that_says_otherwise() {
     let all = fixtures();
-    assert!(all.len() >= 20, "only {} fixtures", all.len());
+    assert!(all.len() >= 27, "only {} fixtures", all.len());
     let read = |p: &Path| expected(&std::fs::read_to_string(p).unwrap());
     for (name, path) in &all {
         let want = read(path);
@@ -284,12 +284,56 @@ fn less_than_the_tolerance_is_contact_and_more_is_air() {
     }
 }
 
+// --- convex cells ---
+
+#[test]
+fn cells_fill_every_fixture_and_lie_inside() {
+    for (name, path) in fixtures() {
+        for (k, solid) in spec_assembly(&path).assembly.solids.iter().enumerate() {
+            assert!(!solid.cells.is_empty(), "{name}: solid {k} has no cells");
+            let bounds = |p: &dyn Fn(DVec3) -> f64| {
+                solid.vertices.iter().map(|&v| p(v)).fold(f64::NEG_INFINITY, f64::max)
+            };
+            for cell in &solid.cells {
+                for &(n, d) in &cell.planes {
+                    let far = cell.vertices.iter().map(|v| n.dot(*v) - d).fold(f64::NEG_INFINITY, f64::max);
+                    assert!(far.abs() < 1e-6, "{name}: a plane stands {far} off its cell");
+                }
+                for axis in [DVec3::X, DVec3::Y, DVec3::Z] {
+                    let reach = cell.vertices.iter().map(|v| v.dot(axis)).fold(f64::NEG_INFINITY, f64::max);
+                    assert!(reach <= bounds(&|v| v.dot(axis)) + 1e-6, "{name}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn plans_are_found_for_what_slides_out_and_none_for_what_is_locked() {
+    for (name, steps) in [
+        ("dovetail-open", 1),
+        ("panel-without-rail", 1),
+        ("taper-with-draft", 1),
+        ("burr", 4),
+        ("dovetail-stopped", 0),
+    ] {
+        let a = spec_assembly(&fixtures()[name]).assembly;
+        let plan = weavelock::sequence::plan(&a, &contacts(&a).patches, |_| None::<()>)
+            .unwrap_or_else(|e| panic!("{name}: {e}"));
+        assert_eq!(plan.steps.len(), steps, "{name}: {:?}", plan.outcome);
+        let checked = weavelock::verify::plan::check(&a, &plan);
+        println!("{name}: {:?} {} steps; check {checked:?}", plan.outcome, plan.steps.len());
+    }
+}
+
 // --- broken files ---
 
 #[test]
 fn broken_meshes_are_refused_with_file_place_and_hint() {
     let dir = root().join("fixtures/meshes");
-    let wanted: [(&str, &str, fn(&Place) -> bool); 12] = [
+    let wanted: [(&str, &str, fn(&Place) -> bool); 14] = [
+        ("broken-crosses-itself.obj", "another face of the same shell", |p| matches!(p, Place::Edge(..))),
+        ("broken-package.3mf", "no 3MF package", |p| *p == Place::File),
         ("broken-open.obj", "open", |p| matches!(p, Place::Edge(..))),
         ("broken-flipped-face.obj", "one faces inward", |p| matches!(p, Place::Edge(..))),
         ("broken-inside-out.obj", "inside out", |p| matches!(p, Place::Edge(..))),
@@ -314,6 +358,58 @@ fn broken_meshes_are_refused_with_file_place_and_hint() {
     for file in there.filter(|f| f.starts_with("broken")) {
         assert!(listed.contains(&file.as_str()), "{file} is not tried");
     }
+}
+
+/// What numerals and lines are made of.
+const GLYPHS: &[u8] = b"0123456789.-e /\n";
+
+/// A small generator of its own (xorshift): the same bytes every run.
+fn noise(seed: &mut u64) -> usize {
+    *seed ^= *seed << 13;
+    *seed ^= *seed >> 7;
+    *seed ^= *seed << 17;
+    *seed as usize
+}
+
+#[test]
+fn no_damage_to_a_file_makes_a_reader_panic_and_what_is_taken_is_closed() {
+    let dir = root().join("fixtures/assemblies/parts");
+    let work = std::env::temp_dir().join(format!("weavelock-damaged-{}", std::process::id()));
+    std::fs::create_dir_all(&work).unwrap();
+    let (mut seed, mut refused, mut taken) = (0x9e37_79b9_7f4a_7c15, 0, 0);
+    for name in ["dovetail-tail.obj", "jack.stl", "left-stop.stl", "block.3mf", "panel-strips.obj"] {
+        let whole = std::fs::read(dir.join(name)).unwrap();
+        for _ in 0..300 {
+            let mut bytes = whole.clone();
+            for _ in 0..1 + noise(&mut seed) % 4 {
+                let at = noise(&mut seed) % bytes.len();
+                match noise(&mut seed) % 4 {
+                    0 => bytes.truncate(at.max(1)),
+                    1 => bytes[at] = noise(&mut seed) as u8,
+                    2 => bytes[at] = GLYPHS[noise(&mut seed) % GLYPHS.len()],
+                    _ => drop(bytes.drain(at..(at + 7).min(bytes.len()))),
+                }
+                if bytes.is_empty() {
+                    break;
+                }
+            }
+            let file = work.join(name);
+            std::fs::write(&file, &bytes).unwrap();
+            match mesh(&file) {
+                Ok(solid) => {
+                    assert!(solid.volume() > 0.0, "{name}");
+                    taken += 1;
+                }
+                Err(faults) => {
+                    assert!(!faults.0.is_empty());
+                    refused += 1;
+                }
+            }
+        }
+    }
+    std::fs::remove_dir_all(&work).unwrap();
+    println!("{refused} refused, {taken} taken");
+    assert!(refused > 300 && taken > 30, "{refused} {taken}");
 }
 
 #[test]
