@@ -21,7 +21,7 @@ pub struct Found {
 #[derive(Debug)]
 pub struct Outcome {
     pub inputs: u64,
-    /// Different verdicts seen.
+    /// Different lines of verdicts seen.
     pub verdicts: usize,
     pub found: Option<Found>,
 }
@@ -34,7 +34,7 @@ const LONGEST: usize = 64 << 10;
 
 /// Runs the target on mutants until the time is over or one is found that breaks a promise.
 pub fn run(target: Target, corpus: Vec<Vec<u8>>, seconds: f64, seed: u64) -> Outcome {
-    let (mut corpus, mut verdicts, mut inputs) = (corpus, BTreeSet::new(), 0);
+    let (fixtures, mut corpus, mut verdicts, mut inputs) = (corpus.len(), corpus, BTreeSet::new(), 0);
     let mut random = Random(seed);
     let start = Instant::now();
     let mut waiting: Vec<Vec<u8>> = corpus.clone();
@@ -42,11 +42,13 @@ pub fn run(target: Target, corpus: Vec<Vec<u8>>, seconds: f64, seed: u64) -> Out
         if start.elapsed().as_secs_f64() > seconds {
             break None;
         }
-        let input = waiting.pop().unwrap_or_else(|| mutant(&corpus, &mut random));
+        let input = waiting.pop().unwrap_or_else(|| mutant(&corpus, fixtures, &mut random));
         inputs += 1;
         match verdict(target, &input) {
             Ok(words) => {
-                if verdicts.insert(shape(&words)) {
+                let known = verdicts.len();
+                verdicts.extend(shapes(&words));
+                if verdicts.len() > known {
                     corpus.push(input);
                 }
             }
@@ -68,14 +70,12 @@ fn verdict(target: Target, input: &[u8]) -> Result<String, String> {
     }
 }
 
-/// The shape of a verdict: its lines without digits and without what stands in quotes (places, values and the user's
-/// own words), each once. What is new is what stands around them.
-fn shape(words: &str) -> String {
-    let line = |line: &str| -> String {
-        line.split('"').step_by(2).flat_map(str::chars).filter(|c| !c.is_ascii_digit()).collect()
-    };
-    let lines: BTreeSet<String> = words.lines().map(line).collect();
-    lines.into_iter().collect::<Vec<_>>().join("\n")
+/// The shapes of a verdict's lines: without digits and without what stands in quotes (places, values and the user's own
+/// words). What is new is what stands around them; only new lines count, as there is no end of new mixtures.
+fn shapes(words: &str) -> impl Iterator<Item = String> + '_ {
+    words
+        .lines()
+        .map(|line| line.split('"').step_by(2).flat_map(str::chars).filter(|c| !c.is_ascii_digit()).collect())
 }
 
 /// SplitMix64: small, and the same everywhere.
@@ -168,8 +168,10 @@ const WORDS: [&str; 64] = [
     "\u{1d11e}",
 ];
 
-fn mutant(corpus: &[Vec<u8>], random: &mut Random) -> Vec<u8> {
-    let mut bytes = random.pick(corpus).clone();
+/// A mutant of one of the first `fixtures` of the corpus, or as often of any.
+fn mutant(corpus: &[Vec<u8>], fixtures: usize, random: &mut Random) -> Vec<u8> {
+    let from = if random.below(2) == 0 { &corpus[..fixtures] } else { corpus };
+    let mut bytes = random.pick(from).clone();
     for _ in 0..=random.below(6) {
         mutate(&mut bytes, corpus, random);
     }
@@ -218,12 +220,13 @@ fn other_number(bytes: &mut Vec<u8>, random: &mut Random) {
     if digits.is_empty() {
         return;
     }
-    let from = *random.pick(&digits);
-    let length = bytes[from..].iter().take_while(|b| b.is_ascii_digit()).count();
-    let number = match random.below(3) {
-        0 => random.below(70).to_string(),
-        1 => (random.next() as i64 >> random.below(64)).to_string(),
-        _ => format!("{:e}", f64::from_bits(random.next())),
+    let number = |from: usize| from..from + bytes[from..].iter().take_while(|b| b.is_ascii_digit()).count();
+    let (here, there) = (number(*random.pick(&digits)), number(*random.pick(&digits)));
+    let other = match random.below(5) {
+        0 => random.below(70).to_string().into_bytes(),
+        1 => (random.next() as i64 >> random.below(64)).to_string().into_bytes(),
+        2 => format!("{:e}", f64::from_bits(random.next())).into_bytes(),
+        _ => bytes[there].to_vec(),
     };
-    bytes.splice(from..from + length, number.bytes());
+    bytes.splice(here, other);
 }

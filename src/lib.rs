@@ -8,7 +8,9 @@
 
 pub mod assembly;
 pub mod blocking;
+pub mod cli;
 pub mod contact;
+pub mod fabricate;
 pub mod fault;
 pub mod flex;
 pub mod input;

@@ -95,6 +95,26 @@ fn good_files_say_what_they_mean() {
     assert_eq!(paper.held, HeldSpec::Rim);
 }
 
+/// Other spellings of the same file: dotted keys, inline tables, other line ends, a byte order mark.
+#[test]
+fn spellings_of_one_file_are_one_spec() {
+    let texts = [
+        "[weave]\nabc = [2, 2, 1]\n[swatch]\nwefts = 4\nwarps = 3\nheld = \"rim\"\n",
+        "\u{feff}[weave]\r\nabc=[2,2,1]\r\n[swatch]\r\nwefts=0x4\r\nwarps=3\r\nheld='rim'",
+        "held = \"rim\"\nweave = { abc = [\n2,\n2,\n1,\n] }\nswatch.wefts = 4\nswatch.warps = 3",
+        "\u{feff} {\"held\": \"r\\u0069m\", \"weave\": {\"abc\": [2,2,1]}, \"swatch\": {\"wefts\":4,\"warps\":3}}",
+    ];
+    let read = |text: &str| {
+        let file = Path::new("spelling");
+        let spec =
+            parse(text, file, Syntax::of(file, text)).unwrap_or_else(|faults| panic!("{faults}\n{text}"));
+        let Subject::Woven(woven) = spec.subject else { panic!("woven") };
+        (woven.weave, woven.profile, woven.layout, woven.held)
+    };
+    assert_eq!(read(texts[0]).3, HeldSpec::Rim);
+    assert!(texts.iter().all(|text| read(text) == read(texts[0])));
+}
+
 #[test]
 fn meshes_are_placed_by_proper_motions() {
     let spec = good("meshes.toml");

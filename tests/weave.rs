@@ -70,6 +70,9 @@ fn families_by_name() {
     assert_eq!(family(&abc(6, 7, 4)), Family::Other);
     assert_eq!(family(&drawn(&["XX.X.", ".XX.X", "X.XX.", ".X.XX", "X.X.X"])), twill(Hand::Z, &[2, 1, 1, 1]));
     assert_eq!(family(&drawn(&["XX", "XX"])), Family::Other);
+    let names = [(1, 1, 1), (2, 2, 1), (3, 1, -1), (7, 1, 3), (6, 7, 4)]
+        .map(|(a, b, c)| family(&abc(a, b, c)).to_string());
+    assert_eq!(names, ["plain", "twill Z 2/2", "twill S 3/1", "satin, step 3, weft face", "other"]);
     assert_eq!(family(&fixture("satin-4-irregular.draft").draft), Family::Other);
 }
 

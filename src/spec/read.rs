@@ -21,7 +21,11 @@ impl Syntax {
     /// JSON where the file's name ends in `.json` or its text begins with a brace (no TOML does), else TOML.
     pub fn of(file: &Path, text: &str) -> Syntax {
         let named = file.extension().is_some_and(|end| end.eq_ignore_ascii_case("json"));
-        if named || text.trim_start().starts_with('{') { Syntax::Json } else { Syntax::Toml }
+        if named || text.trim_start_matches('\u{feff}').trim_start().starts_with('{') {
+            Syntax::Json
+        } else {
+            Syntax::Toml
+        }
     }
 
     fn tree(self, text: &str) -> (Table, Vec<SyntaxFault>) {
@@ -41,6 +45,7 @@ pub fn read(path: &Path) -> Result<Spec, Faults> {
 
 /// Reads a spec's text; `file` names it in faults, and the files that it names are relative to the folder of `file`.
 pub fn parse(text: &str, file: &Path, syntax: Syntax) -> Result<Spec, Faults> {
+    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     let (table, faults) = syntax.tree(text);
     let mut reader = Reader::new(text, file.to_path_buf(), faults);
     let root = reader.root(&table);

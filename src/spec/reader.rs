@@ -159,6 +159,10 @@ impl<'t> Reader<'t> {
                 (None, None) => format!("known here: {}", known.join(", ")),
             };
             let place = self.place(key.at);
+            // Behind a table header that is broken, keys seem to stand at the top.
+            if fields.path.is_empty() && self.broken.first().is_some_and(|&line| line < place.line) {
+                continue;
+            }
             self.note(Some(place), &fields.path, format!("unknown key {}", shown(&key.name)), hint);
         }
     }

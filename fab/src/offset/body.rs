@@ -176,6 +176,14 @@ impl Body {
         self.corners[u as usize] = Corner { anchor, facets, at, placed: true };
     }
 
+    /// Adds a triangle.
+    pub fn add(&mut self, tri: [u32; 3], facet: u32) {
+        let t = self.triangles.len() as u32;
+        self.triangles.push(Some(tri));
+        self.facet.push(facet);
+        tri.iter().for_each(|&c| self.star[c as usize].push(t));
+    }
+
     /// Adds a plane of its own to one corner and moves it under it; false where there is no room.
     pub fn push(&mut self, c: u32, plane: HalfSpace) -> bool {
         let corner = &self.corners[c as usize];
