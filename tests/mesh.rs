@@ -266,7 +266,8 @@ fn the_one_row_of_two_bricks_that_just_touch_is_the_way_apart() {
         }
         let pose = posed(way * far);
         let parts = [0, 1].map(|k| (["a", "b"][k].to_owned(), brick(-half[k], half[k]), pose[k]));
-        let c = contacts(&placed(parts.to_vec(), &[]));
+        // A tolerance near the gap that is left: within a wider one a second corner may touch as well.
+        let c = mesh_patches(&placed(parts.to_vec(), &[]), 1e-6).unwrap_or_else(|e| panic!("{e}"));
         assert_eq!(c.patches.len() + c.assumed.len(), 1, "round {round}: {c:?}");
         let n = c.patches[0].normal;
         let apart = parry_distance(half, posed(way * far + 0.01 * n));
