@@ -31,13 +31,13 @@ impl Shapes {
             .parts
             .iter()
             .map(|part| {
-                let m: DMat3 = part.pose.matrix3.into();
+                let m: DMat3 = part.pose.matrix3;
                 let key = (part.solid, m.to_cols_array().map(f64::to_bits));
                 let at = *known.entry(key).or_insert_with(|| {
                     turned.push(asm.solids[part.solid].cells.iter().map(|c| turn(c, m)).collect());
                     turned.len() - 1
                 });
-                (at, part.pose.translation.into())
+                (at, part.pose.translation)
             })
             .collect();
         Shapes { turned, place }
