@@ -546,6 +546,25 @@ fn sweep_and_program_agree() {
     assert!(free > 500 && hit > 500, "{free} {hit}");
 }
 
+#[test]
+fn a_part_goes_as_far_as_the_first_thing_in_its_way() {
+    use weavelock::assembly::PartIx;
+    use weavelock::blocking::reach::{Reach, reach};
+    use weavelock::blocking::{Touch, shadow::Shapes, shadow::View};
+    let (asm, _) = assembly(vec![
+        ("block", vec![cuboid([0., 0., 0.], [1., 1., 1.])]),
+        ("gate", vec![cuboid([0.99, 0., 7.], [2., 1., 8.]), cuboid([0.99, 0., 5.], [2., 1., 6.])]),
+    ]);
+    for angle in [0.0, 0.7, 2.2] {
+        let (asm, _) = turned(&asm, angle);
+        let (shapes, touch) = (Shapes::of(&asm), Touch::of(&asm));
+        let d = asm.parts[0].pose.transform_vector3(DVec3::Z);
+        let far = |d: DVec3| reach(&View::new(&shapes, d), PartIx(0), PartIx(1), touch);
+        assert!(matches!(far(d), Reach::Until(t) if (t - 4.0).abs() < 1e-4), "{:?}", far(d));
+        assert_eq!(far(-d), Reach::Free);
+    }
+}
+
 /// The cell mirrored in the plane of one of its faces: both touch on the whole face.
 fn mirrored(c: &Cell, face: usize) -> Cell {
     let (n, d) = c.planes[face];

@@ -10,6 +10,7 @@
 
 pub mod cone;
 pub mod graph;
+pub mod reach;
 pub mod sector;
 pub mod shadow;
 pub mod sweep;
