@@ -1,4 +1,5 @@
 mod bad_input;
+mod mesh;
 mod plan;
 mod report;
 mod weave;

@@ -76,6 +76,10 @@ const UNIT_ROUND_OFF: f64 = 1e-9;
 /// planes and carry a conditioning of up to about 1e6 over f64's 1e-16.
 pub const PLANE_ROUND_OFF: f64 = 1e-9;
 
+fn within_reach(v: DVec3) -> bool {
+    v.is_finite() && v.abs().max_element() <= LARGEST_COORDINATE
+}
+
 impl Shape {
     /// Largest extent of the bounding box, in mm.
     pub fn size(&self) -> f64 {
@@ -89,17 +93,46 @@ impl Shape {
         self.vertices.iter().fold(start, |(lo, hi), v| (lo.min(*v), hi.max(*v)))
     }
 
+    /// Signed volume in mm3; positive when the facets face outward.
+    pub fn volume(&self) -> f64 {
+        let (lo, hi) = self.bounds();
+        let (o, point) = ((lo + hi) / 2.0, |c: u32| self.vertices[c as usize]);
+        let cone = |f: &Facet| {
+            let from = point(f.corners[0]);
+            let fan =
+                f.corners[1..].windows(2).map(|w| (from - o).dot((point(w[0]) - o).cross(point(w[1]) - o)));
+            fan.sum::<f64>() / 6.0
+        };
+        self.facets.iter().map(cone).sum()
+    }
+
+    /// Area of a facet in mm2.
+    pub fn facet_area(&self, f: usize) -> f64 {
+        let Facet { corners, normal } = &self.facets[f];
+        let point = |c: u32| self.vertices[c as usize];
+        let from = point(corners[0]);
+        corners[1..]
+            .windows(2)
+            .map(|w| (point(w[0]) - from).cross(point(w[1]) - from))
+            .sum::<DVec3>()
+            .dot(*normal)
+            / 2.0
+    }
+
     fn faults(&self, at: &str) -> Vec<Fault> {
         let fault = |what: String| Fault { place: at.to_string(), what };
         if self.facets.len() < 4 {
             return vec![fault(format!("{} facets do not enclose a volume", self.facets.len()))];
         }
-        if let Some(v) = self.vertices.iter().position(|v| !(v.abs().max_element() <= LARGEST_COORDINATE)) {
+        if let Some(v) = self.vertices.iter().position(|v| !within_reach(*v)) {
             return vec![fault(format!("vertex {v} is not a finite point within {LARGEST_COORDINATE} mm"))];
         }
         let mut faults: Vec<Fault> = (0..self.facets.len()).filter_map(|f| self.facet_fault(f, at)).collect();
         if faults.is_empty() {
             faults.extend(self.open_edge().map(fault));
+        }
+        if faults.is_empty() && self.volume() <= 0.0 {
+            faults.push(fault("is inside out: its volume is not positive".into()));
         }
         faults
     }
@@ -110,7 +143,7 @@ impl Shape {
             "has fewer than three corners".to_string()
         } else if let Some(c) = corners.iter().find(|&&c| c as usize >= self.vertices.len()) {
             format!("names vertex {c} of {}", self.vertices.len())
-        } else if !((normal.length() - 1.0).abs() <= UNIT_ROUND_OFF) {
+        } else if !normal.is_finite() || (normal.length() - 1.0).abs() > UNIT_ROUND_OFF {
             format!("has a normal of length {}", normal.length())
         } else {
             let heights = corners.iter().map(|&c| normal.dot(self.vertices[c as usize]));
@@ -173,7 +206,7 @@ impl Job {
             Some(s) if s.facets.len() != part.roles.len() => {
                 format!("has {} roles for {} facets", part.roles.len(), s.facets.len())
             }
-            Some(_) if !rigid || m.determinant() <= 0.0 || !part.pose.translation.is_finite() => {
+            Some(_) if !rigid || m.determinant() <= 0.0 || !within_reach(part.pose.translation) => {
                 "has a pose that is not a proper rigid motion".into()
             }
             Some(_) => self.role_fault(p)?,

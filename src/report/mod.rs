@@ -6,6 +6,8 @@
 pub mod answer;
 pub mod content;
 pub mod draw;
+pub mod export;
 pub mod file;
 pub mod page;
 pub mod text;
+pub mod words;

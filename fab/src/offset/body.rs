@@ -176,6 +176,14 @@ impl Body {
         self.corners[u as usize] = Corner { anchor, facets, at, placed: true };
     }
 
+    /// Adds a triangle.
+    pub fn add(&mut self, tri: [u32; 3], facet: u32) {
+        let t = self.triangles.len() as u32;
+        self.triangles.push(Some(tri));
+        self.facet.push(facet);
+        tri.iter().for_each(|&c| self.star[c as usize].push(t));
+    }
+
     /// Adds a plane of its own to one corner and moves it under it; false where there is no room.
     pub fn push(&mut self, c: u32, plane: HalfSpace) -> bool {
         let corner = &self.corners[c as usize];
@@ -193,7 +201,7 @@ impl Body {
         for c in &mut body.corners {
             (c.anchor, c.at) = (pose.transform_point3(c.anchor), pose.transform_point3(c.at));
         }
-        let shift = DVec3::from(pose.translation);
+        let shift = pose.translation;
         for m in &mut body.moved {
             let normal = pose.transform_vector3(m.plane.normal);
             m.plane = HalfSpace { normal, offset: m.plane.offset + normal.dot(shift) };

@@ -4,8 +4,8 @@
 //! kept one. First order: where facets bend by an angle t it lies up to about depth * t * t / 2 deeper. Not complete:
 //! shapes exist that it can not offset; it then says where, and the caller writes nothing.
 //!
-//! The steps: `body` moves corners, `weld` first takes out edges too short to matter, `settle` collapses what turned
-//! over, `relief` parts bodies that are still nearer than the fit.
+//! The steps: `body` moves corners, `weld` takes out edges too short to matter, `split` parts corners that have no one
+//! place, `settle` collapses what turned over, `relief` parts bodies that are still nearer than the fit.
 //!
 //! Designs that lost. *Planes intersected anew* (each corner where its three planes meet): at four or more facets the
 //! planes miss each other, and short edges turn over. *Uniting coplanar facets first*: not needed, equal planes bind a
@@ -17,6 +17,7 @@ pub mod body;
 pub mod least;
 pub mod relief;
 pub mod settle;
+pub mod split;
 pub mod weld;
 
 use crate::mesh::Mesh;
@@ -93,6 +94,7 @@ pub fn offset(job: &Job, aim: &Aim) -> Vec<Offset> {
 fn moved_body(job: &Job, shape: usize, contact: &[bool], aim: &Aim) -> (Body, Settled) {
     let mut body = Body::new(&job.shapes[shape], contact, aim.depth);
     weld::weld(&mut body, aim.depth * REACH);
+    split::split(&mut body);
     let settled = settle::settle(&mut body, aim.thinnest);
     (body, settled)
 }

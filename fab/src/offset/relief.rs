@@ -20,6 +20,10 @@ use std::collections::BTreeMap;
 /// time where bodies can not be parted at all.
 const ROUNDS: usize = 20;
 
+/// Points nearer than this, in mm, have no direction between them that is more than round-off: ten thousand times the
+/// step of f64 at a metre.
+const TOUCHING: f64 = 1e-9;
+
 /// How far one corner has to go back, and in which direction.
 #[derive(Clone, Copy)]
 struct Push {
@@ -87,7 +91,7 @@ fn all_pushes(surfaces: &[Surface], aim: &Aim) -> Vec<BTreeMap<u32, Push>> {
     for (&(i, j), close) in pairs.iter().zip(&close) {
         for c in close {
             let lack = aim.depth - c.near.distance / 2.0;
-            let Some(towards_b) = (c.near.b - c.near.a).try_normalize() else { continue };
+            let Some(towards_b) = direction(&surfaces[i], &surfaces[j], c) else { continue };
             share(
                 &surfaces[i],
                 c.triangles.0,
@@ -105,6 +109,20 @@ fn all_pushes(surfaces: &[Surface], aim: &Aim) -> Vec<BTreeMap<u32, Push>> {
         }
     }
     pushes
+}
+
+/// From `a` to `b`: between the nearest points, or where these touch, the way that the two triangles face.
+fn direction(a: &Surface, b: &Surface, c: &Close) -> Option<DVec3> {
+    let facing = |s: &Surface, t: u32| {
+        let [p, q, r] = s.mesh.corners(t as usize);
+        (q - p).cross(r - p).normalize_or_zero()
+    };
+    let way = if c.near.distance > TOUCHING {
+        c.near.b - c.near.a
+    } else {
+        facing(a, c.triangles.0) - facing(b, c.triangles.1)
+    };
+    way.try_normalize()
 }
 
 /// Spreads a push at a point of a triangle over its corners, so that the point goes back by just that much.

@@ -94,7 +94,8 @@ fn is_faulty([a, b, c]: [DVec3; 3], normal: DVec3, thinnest: f64, least_cosine: 
     let n = (b - a).cross(c - a);
     let longest = a.distance_squared(b).max(b.distance_squared(c)).max(c.distance_squared(a)).sqrt();
     let twice_area = n.length();
-    !(twice_area > thinnest * longest) || !(n.dot(normal) > least_cosine * twice_area)
+    let sound = twice_area > thinnest * longest && n.dot(normal) > least_cosine * twice_area;
+    !sound
 }
 
 fn collapse_one(body: &mut Body, t: usize, thinnest: f64, demand: Demand) -> bool {

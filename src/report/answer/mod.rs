@@ -3,6 +3,14 @@
 //! Every answer carries the text of its spec, so that it can be checked without the file, and a checksum against
 //! accidental change. Not promised: that a checksum stops a forger; `verify` re-does the mathematics.
 
+mod flex;
+mod repeats;
+mod weave;
+
+pub use flex::{CoreAnswer, FlexAnswer, flex};
+pub use repeats::{RepeatsAnswer, RepeatsRow, repeats};
+pub use weave::{WeaveAnswer, weave};
+
 use crate::assembly::{Assembly, PartIx};
 use crate::contact::Joined;
 use crate::locking::{Check, Motion, Stress, Twist, Verdict};

@@ -1,0 +1,61 @@
+//! Takes a mesh in mm; gives binary STL, and reads it back.
+//!
+//! STL keeps f32 and repeats each corner: vertices are snapped first, and corners are one vertex again where their bits
+//! are equal. It has no unit, so the name says `mm`.
+
+use crate::mesh::Mesh;
+use glam::DVec3;
+use std::collections::BTreeMap;
+use std::io::{self, Read, Seek, Write};
+
+/// How far a vertex can move when its coordinates become f32, in mm, for coordinates up to `largest` mm: half a step of
+/// 2^-23 in each of three.
+pub fn snap_distance(largest: f64) -> f64 {
+    largest * 2f64.powi(-24) * 3f64.sqrt()
+}
+
+/// The mesh as STL can hold it: coordinates in f32, equal vertices united, triangles that vanish by it left out.
+pub fn snapped(mesh: &Mesh) -> Mesh {
+    let snap = |v: &DVec3| v.to_array().map(|x| x as f32 + 0.0);
+    united(mesh.vertices.iter().map(snap).collect(), mesh.triangles.iter().copied())
+}
+
+pub fn write(mesh: &Mesh, out: &mut dyn Write) -> io::Result<()> {
+    let triangles: Vec<stl_io::Triangle> = (0..mesh.triangles.len())
+        .map(|t| {
+            let c = mesh.corners(t);
+            let normal = (c[1] - c[0]).cross(c[2] - c[0]).normalize_or_zero();
+            stl_io::Triangle {
+                normal: stl_io::Normal::new(normal.as_vec3().to_array()),
+                vertices: c.map(|v| stl_io::Vertex::new(v.as_vec3().to_array())),
+            }
+        })
+        .collect();
+    let mut sized = Vec::with_capacity(84 + 50 * triangles.len());
+    stl_io::write_stl(&mut sized, triangles.iter())?;
+    out.write_all(&sized)
+}
+
+pub fn read(from: &mut (impl Read + Seek)) -> io::Result<Mesh> {
+    let stl = stl_io::read_stl(from)?;
+    let triangles = stl.faces.iter().map(|f| f.vertices.map(|v| v as u32));
+    Ok(united(stl.vertices.iter().map(|v| v.0).collect(), triangles))
+}
+
+fn united(vertices: Vec<[f32; 3]>, triangles: impl Iterator<Item = [u32; 3]>) -> Mesh {
+    let mut index: BTreeMap<[u32; 3], u32> = BTreeMap::new();
+    let mut mesh = Mesh::default();
+    for t in triangles {
+        let t = t.map(|v| {
+            let p = vertices[v as usize].map(|x| x + 0.0);
+            *index.entry(p.map(f32::to_bits)).or_insert_with(|| {
+                mesh.vertices.push(DVec3::from_array(p.map(f64::from)));
+                mesh.vertices.len() as u32 - 1
+            })
+        });
+        if t[0] != t[1] && t[1] != t[2] && t[2] != t[0] {
+            mesh.triangles.push(t);
+        }
+    }
+    mesh
+}

@@ -1,0 +1,152 @@
+//! Takes what went wrong or was measured; gives findings: what, where, and what to do about it.
+
+use crate::check::{Check, Outcome};
+use crate::gap::{FIT_TOLERANCE, Gap, Verdict};
+use crate::ledger::Scale;
+use crate::make::crossings;
+use crate::mesh::{Closure, Mesh};
+use crate::offset::{Failure, Why};
+use crate::report::{Finding, Place, Report, Severity};
+use glam::DVec3;
+
+const SMALLER: &str = "take a smaller clearance, a larger pitch, or a shape with thicker walls there";
+const OURS: &str = "this is a fault of the program: please report it with the input";
+
+fn error(id: &str, at: Vec<DVec3>, what: String, remedy: &str) -> Finding {
+    let place = Place { parts: vec![id.to_string()], at };
+    Finding { severity: Severity::Error, place, what, remedy: remedy.to_string() }
+}
+
+pub fn of_failure(id: &str, failure: &Failure) -> Finding {
+    let what = match failure.why {
+        Why::NoRoom => {
+            "facets that meet here face each other: no point lies under all of them by the clearance"
+        }
+        Why::TurnedOver => "the clearance turns a triangle over that no collapse could mend",
+        Why::Vanished => "the clearance leaves nothing of this part",
+    };
+    error(id, vec![failure.at], format!("{what}; nothing is written for the part"), SMALLER)
+}
+
+/// What keeps a mesh on the master from being written.
+pub fn of_mesh(id: &str, master: &Mesh, scale: &Scale) -> Vec<Finding> {
+    let mut found = Vec::new();
+    if let Closure::Open { edges, at } = master.closure() {
+        let what =
+            format!("{edges} edges are not between two opposite triangles; nothing is written for the part");
+        found.push(error(id, vec![scale.down(at)], what, SMALLER));
+        return found;
+    }
+    if let Some(c) = crossings(master).first() {
+        let what =
+            "the clearance makes the surface cross itself; nothing is written for the part".to_string();
+        found.push(error(id, vec![scale.down(c.at)], what, SMALLER));
+    }
+    let topology = master.topology();
+    if topology.bodies != 1 {
+        let what =
+            format!("the clearance leaves {} bodies; nothing is written for the part", topology.bodies);
+        found.push(error(id, vec![], what, SMALLER));
+    }
+    found
+}
+
+pub fn of_copy(id: &str, file: &str, same: bool) -> Option<Finding> {
+    let what = || format!("{file} read back is not what was written; nothing is left of it");
+    (!same).then(|| error(id, vec![], what(), OURS))
+}
+
+/// Adds to the report's findings what its gaps, checks and figures say.
+pub fn collect(report: &mut Report, scale: &Scale) {
+    let mut found: Vec<Finding> = report.gaps.iter().filter_map(of_gap).collect();
+    for part in &report.parts {
+        found.extend(part.checks.iter().filter_map(|c| of_check(c, std::slice::from_ref(&part.id))));
+    }
+    for pair in &report.pair_checks {
+        found.extend(of_check(&pair.check, &[pair.a.clone(), pair.b.clone()]));
+    }
+    found.extend(of_shrinkage(report, scale));
+    found.extend(of_no_clearance(report));
+    let note = "walls are not measured against the least wall of the process yet".to_string();
+    found.push(Finding {
+        severity: Severity::Note,
+        place: Place::default(),
+        what: note,
+        remedy: "look at thin lips in the slicer's preview".into(),
+    });
+    report.findings.extend(found);
+    report.findings.sort_by_key(|f| std::cmp::Reverse(f.severity));
+    report.findings.dedup();
+}
+
+fn of_gap(gap: &Gap) -> Option<Finding> {
+    let (severity, what, remedy) = match gap.verdict {
+        Verdict::Kept => return None,
+        Verdict::Short => (
+            Severity::Error,
+            format!(
+                "the least gap is {:.4} mm, promised {:.4}; neither part is written",
+                gap.least_mm, gap.promised_mm
+            ),
+            SMALLER,
+        ),
+        Verdict::Crossing => {
+            (Severity::Error, "the parts as made cross each other; neither is written".to_string(), SMALLER)
+        }
+        Verdict::Wide => (
+            Severity::Warning,
+            format!(
+                "the least gap is {:.4} mm, more than {} % above the promised {:.4}",
+                gap.least_mm,
+                FIT_TOLERANCE * 100.0,
+                gap.promised_mm
+            ),
+            "finer sampling brings the facets of their common patch nearer to one another's planes",
+        ),
+    };
+    let place = Place { parts: vec![gap.a.clone(), gap.b.clone()], at: gap.at.to_vec() };
+    Some(Finding { severity, place, what, remedy: remedy.to_string() })
+}
+
+fn of_check(check: &Check, parts: &[String]) -> Option<Finding> {
+    let (severity, why, remedy) = match &check.outcome {
+        Outcome::Passed => return None,
+        Outcome::Failed(why) => (Severity::Error, why, "do not make this part before it is clear why"),
+        Outcome::NotRun(why) => (Severity::Note, why, "install the program to have this checked"),
+    };
+    let what = format!("{}, {}: {why}", check.by, check.of);
+    let parts = if severity == Severity::Note { vec![] } else { parts.to_vec() };
+    Some(Finding { severity, place: Place { parts, at: vec![] }, what, remedy: remedy.to_string() })
+}
+
+/// Shrinkage that is known less well than the clearance needs.
+fn of_shrinkage(report: &Report, scale: &Scale) -> Option<Finding> {
+    let extent = |p: &crate::report::PartReport| {
+        Some((p.read_back.high? - p.read_back.low?).max_element() / scale.factor)
+    };
+    let largest = report.parts.iter().filter_map(extent).fold(0.0, f64::max);
+    let spread =
+        largest * (scale.range.1 - scale.factor).max(scale.factor - scale.range.0) / scale.factor / 2.0;
+    let what = format!(
+        "the shrinkage is known so roughly that an end of the longest part may be off by {spread:.2} mm; the clearance is {:.2}",
+        report.clearance.value
+    );
+    let remedy = "print and measure one part, and give the shrinkage that you find".into();
+    (spread > report.clearance.value).then(|| Finding {
+        severity: Severity::Warning,
+        place: Place::default(),
+        what,
+        remedy,
+    })
+}
+
+fn of_no_clearance(report: &Report) -> Option<Finding> {
+    let what = "the clearance is zero: these parts are for looking at, they will not go together".to_string();
+    let remedy = "give the clearance of the process".into();
+    (report.clearance.value == 0.0).then(|| Finding {
+        severity: Severity::Warning,
+        place: Place::default(),
+        what,
+        remedy,
+    })
+}

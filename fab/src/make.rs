@@ -1,0 +1,241 @@
+//! Takes a job, a recipe and a folder; gives files and the report on them.
+//!
+//! Promised: a file that is there was read back, closed, of one body, free of crossings, and its gaps were measured; what
+//! failed one of these is not written and has a finding. Not promised: that a process can make every detail; walls are
+//! not measured yet.
+
+use crate::bvh::Bvh;
+use crate::check::Programs;
+use crate::cross;
+use crate::external;
+use crate::files::{Batch, FileError, obj, stems, stl};
+use crate::findings;
+use crate::gap::{self, Gap, Made, Promise, Verdict};
+use crate::ledger::Scale;
+use crate::mesh::Mesh;
+use crate::offset::{self, Aim, Offset};
+use crate::process::Process;
+use crate::report::{Finding, PartReport, ReadBack, Report};
+use crate::shape::{Fault, Job, Role};
+use glam::DVec3;
+use rayon::prelude::*;
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
+
+/// How a job is to be made.
+#[derive(Clone, Debug)]
+pub struct Recipe {
+    pub process: Process,
+    /// The point that scaling leaves where it is, mm.
+    pub datum: DVec3,
+    /// OBJ beside STL.
+    pub obj: bool,
+    /// Programs of others to check with; `None` checks with none.
+    pub programs: Option<Programs>,
+}
+
+impl Recipe {
+    /// The process, scaled about the assembly's origin, both formats, all checkers.
+    pub fn new(process: Process) -> Recipe {
+        Recipe { process, datum: DVec3::ZERO, obj: true, programs: Some(Programs::default()) }
+    }
+}
+
+#[derive(Debug, thiserror::Error)]
+pub enum FabError {
+    #[error("{}", .0.iter().map(Fault::to_string).collect::<Vec<_>>().join("\n"))]
+    Job(Vec<Fault>),
+    #[error(transparent)]
+    File(#[from] FileError),
+}
+
+/// The least altitude of a triangle, in snap distances: snapping moves three corners by one each, so that 4 can not turn
+/// a triangle over.
+const THINNEST_IN_SNAPS: f64 = 4.0;
+
+/// How much deeper than promised faces go, in snap distances: one for the snap itself, one so that `relief` has
+/// something to stop at.
+const MARGIN_IN_SNAPS: f64 = 2.0;
+
+/// How often a pair's distance can be off by one snap distance: the margins of both faces and their snaps.
+const PAIR_IN_SNAPS: f64 = 2.0 * (MARGIN_IN_SNAPS + 1.0);
+
+/// A part on its way to the file.
+pub(crate) struct Piece {
+    pub id: String,
+    /// Of its file names.
+    pub stem: String,
+    pub offset: Offset,
+    /// On the master, as f32 can hold it.
+    pub master: Mesh,
+    /// What was read back; `None` where the part is not to be written.
+    pub made: Option<Made>,
+    pub faults: Vec<Finding>,
+}
+
+/// Makes everything: offsets, files, measurements, findings.
+pub fn make(job: &Job, recipe: &Recipe, folder: &Path) -> Result<Report, FabError> {
+    let faults = job.faults();
+    if !faults.is_empty() {
+        return Err(FabError::Job(faults));
+    }
+    let scale = Scale::of(&recipe.process, recipe.datum);
+    let snap = stl::snap_distance(largest_coordinate(job, &scale)) / scale.factor;
+    let mut pieces = pieces(job, &aim(recipe.process.clearance.value, snap), &scale);
+    let mut batch = Batch::new(folder)?;
+    for piece in &mut pieces {
+        write(piece, recipe, &mut batch)?;
+    }
+    let gaps = measure(job, recipe, &scale, snap, &mut pieces);
+    for piece in pieces.iter().filter(|p| p.made.is_none()) {
+        file_names(&piece.stem).iter().for_each(|n| batch.discard(n));
+    }
+    batch.commit()?;
+    let mut report = report(job, recipe, &scale, &pieces, gaps, folder);
+    if let Some(programs) = &recipe.programs {
+        external::check_all(&mut report, &pieces, programs, folder);
+    }
+    findings::collect(&mut report, &scale);
+    Ok(report)
+}
+
+fn aim(clearance: f64, snap: f64) -> Aim {
+    Aim {
+        depth: clearance + MARGIN_IN_SNAPS * snap,
+        fit: 2.0 * (clearance + snap),
+        thinnest: THINNEST_IN_SNAPS * snap,
+    }
+}
+
+fn pieces(job: &Job, aim: &Aim, scale: &Scale) -> Vec<Piece> {
+    let stems = stems(&job.parts.iter().map(|p| p.id.clone()).collect::<Vec<_>>());
+    let offsets = offset::offset(job, aim);
+    let all: Vec<_> = job.parts.iter().zip(stems).zip(offsets).collect();
+    all.into_par_iter().map(|((part, stem), offset)| piece(&part.id, stem, offset, scale)).collect()
+}
+
+fn piece(id: &str, stem: String, offset: Offset, scale: &Scale) -> Piece {
+    let master = stl::snapped(&offset.mesh.map(|v| scale.up(v)));
+    let mut faults: Vec<Finding> = offset.failures.iter().map(|f| findings::of_failure(id, f)).collect();
+    faults.extend(findings::of_mesh(id, &master, scale));
+    Piece { id: id.to_string(), stem, offset, master, made: None, faults }
+}
+
+/// Gaps of what was read back; a piece that comes too near to another is not to be written.
+fn measure(job: &Job, recipe: &Recipe, scale: &Scale, snap: f64, pieces: &mut [Piece]) -> Vec<Gap> {
+    let neighbours = job.neighbours();
+    let fit = 2.0 * recipe.process.clearance.value;
+    let promise = Promise { scale, fit, round_off: PAIR_IN_SNAPS * snap, neighbours: &neighbours };
+    let made: Vec<Option<Made>> = pieces.iter_mut().map(|p| p.made.take()).collect();
+    let gaps = gap::gaps(&made, &promise);
+    let bad = |g: &&Gap| matches!(g.verdict, Verdict::Short | Verdict::Crossing);
+    let spoilt: BTreeSet<&str> = gaps.iter().filter(bad).flat_map(|g| [g.a.as_str(), g.b.as_str()]).collect();
+    for (piece, made) in pieces.iter_mut().zip(made) {
+        piece.made = made.filter(|m| !spoilt.contains(m.id.as_str()));
+    }
+    gaps
+}
+
+fn report(
+    job: &Job,
+    recipe: &Recipe,
+    scale: &Scale,
+    pieces: &[Piece],
+    gaps: Vec<Gap>,
+    folder: &Path,
+) -> Report {
+    Report {
+        name: job.name.clone(),
+        process: recipe.process.name.clone(),
+        clearance: recipe.process.clearance.clone(),
+        fit_mm: 2.0 * recipe.process.clearance.value,
+        scale: scale.factor,
+        scale_range: scale.range,
+        datum: scale.datum,
+        ledger: scale.ledger.clone(),
+        parts: (0..pieces.len()).map(|p| part_report(job, pieces, p, recipe, folder)).collect(),
+        gaps,
+        pair_checks: vec![],
+        molds: vec![],
+        molds_note: "molds are not built yet".into(),
+        findings: pieces.iter().flat_map(|p| p.faults.clone()).collect(),
+    }
+}
+
+fn largest_coordinate(job: &Job, scale: &Scale) -> f64 {
+    let place = |p: &crate::shape::PlacedPart| {
+        let points = job.shapes[p.shape].vertices.iter();
+        points.map(|&v| scale.up(p.pose.transform_point3(v)).abs().max_element()).fold(0.0, f64::max)
+    };
+    job.parts.iter().map(place).fold(0.0, f64::max)
+}
+
+fn file_names(stem: &str) -> [String; 2] {
+    ["stl", "obj"].map(|ending| format!("{stem}.mm.{ending}"))
+}
+
+/// Stages the files of a sound piece and reads them back.
+fn write(piece: &mut Piece, recipe: &Recipe, batch: &mut Batch) -> Result<(), FileError> {
+    if !piece.faults.is_empty() {
+        return Ok(());
+    }
+    let [stl_name, obj_name] = file_names(&piece.stem);
+    let path = batch.stage(&stl_name, |out| stl::write(&piece.master, out))?;
+    let mesh = reread(&path, |p| stl::read(&mut std::fs::File::open(p)?))?;
+    if recipe.obj {
+        let path = batch.stage(&obj_name, |out| obj::write(&piece.master, &piece.id, out))?;
+        let back = reread(&path, |p| obj::read(&std::fs::read_to_string(p)?))?;
+        piece.faults.extend(findings::of_copy(&piece.id, &obj_name, back == piece.master));
+    }
+    piece.faults.extend(findings::of_copy(&piece.id, &stl_name, same_solid(&mesh, &piece.master)));
+    if piece.faults.is_empty() {
+        let tree = Bvh::new(&mesh);
+        piece.made = Some(Made { id: piece.id.clone(), mesh, tree });
+    }
+    Ok(())
+}
+
+fn reread(path: &PathBuf, read: impl FnOnce(&PathBuf) -> std::io::Result<Mesh>) -> Result<Mesh, FileError> {
+    read(path).map_err(|cause| FileError { action: "read back", path: path.clone(), cause })
+}
+
+/// Whether what was read back is what was written: coordinates are f32 on both sides, so it is the same or it is wrong.
+fn same_solid(read: &Mesh, written: &Mesh) -> bool {
+    let corners = |m: &Mesh| (0..m.triangles.len()).map(|t| m.corners(t)).collect::<Vec<_>>();
+    corners(read) == corners(written)
+}
+
+fn part_report(job: &Job, pieces: &[Piece], p: usize, recipe: &Recipe, folder: &Path) -> PartReport {
+    let (part, piece) = (&job.parts[p], &pieces[p]);
+    let shape = &job.shapes[part.shape];
+    let (nominal, finished) = (shape.volume(), piece.offset.mesh.volume());
+    let [stl_name, obj_name] = file_names(&piece.stem).map(|name| folder.join(name).display().to_string());
+    let same = piece.offset.same_as;
+    PartReport {
+        id: part.id.clone(),
+        file: piece.made.as_ref().map(|_| stl_name),
+        obj: piece.made.as_ref().filter(|_| recipe.obj).map(|_| obj_name),
+        same_as: (same != p).then(|| job.parts[same].id.clone()),
+        read_back: piece.made.as_ref().map(|m| ReadBack::of(&m.mesh)).unwrap_or_default(),
+        expected_volume_mm3: piece.master.volume(),
+        nominal_volume_mm3: nominal,
+        removed_mm3: nominal - finished,
+        clearance_volume_mm3: recipe.process.clearance.value * contact_area(job, p),
+        mass_g: finished * recipe.process.density.value / MM3_IN_CM3,
+        longest_move_mm: piece.offset.longest_move,
+        checks: vec![],
+    }
+}
+
+fn contact_area(job: &Job, p: usize) -> f64 {
+    let part = &job.parts[p];
+    let contact = part.roles.iter().enumerate().filter(|(_, r)| **r != Role::Outer);
+    contact.map(|(f, _)| job.shapes[part.shape].facet_area(f)).sum()
+}
+
+const MM3_IN_CM3: f64 = 1000.0;
+
+/// Crossings of a mesh with itself, for `findings`.
+pub(crate) fn crossings(mesh: &Mesh) -> Vec<cross::Crossing> {
+    cross::within(mesh, &Bvh::new(mesh))
+}

@@ -1,0 +1,131 @@
+//! Takes nothing; gives the shape of the answer: parts, gaps, scale with its ledger, findings.
+
+use crate::check::Check;
+use crate::gap::Gap;
+use crate::ledger::Entry;
+use crate::mesh::{Closure, Mesh};
+use crate::process::Figure;
+use glam::DVec3;
+use serde::Serialize;
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Severity {
+    Note,
+    Warning,
+    Error,
+}
+
+/// Where a finding is: ids of parts, and points in the finished assembly, mm.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Place {
+    pub parts: Vec<String>,
+    pub at: Vec<DVec3>,
+}
+
+/// Something that whoever makes the parts has to know.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Finding {
+    pub severity: Severity,
+    pub place: Place,
+    pub what: String,
+    pub remedy: String,
+}
+
+/// What was measured on a file after it was written, on the master's scale; all `None` where there is no file.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct ReadBack {
+    pub volume_mm3: Option<f64>,
+    pub watertight: Option<bool>,
+    pub bodies: Option<usize>,
+    pub genus: Option<i64>,
+    pub triangles: Option<usize>,
+    /// Bounding box, mm.
+    pub low: Option<DVec3>,
+    pub high: Option<DVec3>,
+}
+
+impl ReadBack {
+    pub fn of(mesh: &Mesh) -> ReadBack {
+        let (topology, (low, high)) = (mesh.topology(), mesh.bounds());
+        ReadBack {
+            volume_mm3: Some(mesh.volume()),
+            watertight: Some(mesh.closure() == Closure::Closed),
+            bodies: Some(topology.bodies),
+            genus: Some(topology.genus),
+            triangles: Some(mesh.triangles.len()),
+            low: Some(low),
+            high: Some(high),
+        }
+    }
+}
+
+/// A part as written.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct PartReport {
+    pub id: String,
+    /// Binary STL on the master's scale, in its place in the assembly, mm; `None` where nothing was written.
+    pub file: Option<String>,
+    pub obj: Option<String>,
+    /// The first part with the same solid up to a rigid motion, where there is one before this.
+    pub same_as: Option<String>,
+    #[serde(flatten)]
+    pub read_back: ReadBack,
+    /// Before writing, master's scale.
+    pub expected_volume_mm3: f64,
+    /// Before clearance and scale.
+    pub nominal_volume_mm3: f64,
+    /// What the clearance took away, finished size, and clearance times contact area, to which it should be near.
+    pub removed_mm3: f64,
+    pub clearance_volume_mm3: f64,
+    /// Finished part, full infill.
+    pub mass_g: f64,
+    /// The longest way that clearance moved a corner, mm.
+    pub longest_move_mm: f64,
+    pub checks: Vec<Check>,
+}
+
+/// A check of two parts together.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct PairCheck {
+    pub a: String,
+    pub b: String,
+    #[serde(flatten)]
+    pub check: Check,
+}
+
+/// The answer of `fab`.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Report {
+    pub name: String,
+    pub process: String,
+    /// For each face of the finished part.
+    pub clearance: Figure,
+    /// Between two faces, mm, finished.
+    pub fit_mm: f64,
+    /// K: the master is larger than the finished part by this factor.
+    pub scale: f64,
+    /// K at the ends of the ranges of all figures.
+    pub scale_range: (f64, f64),
+    /// The point of the assembly that scaling leaves in place, mm.
+    pub datum: DVec3,
+    pub ledger: Vec<Entry>,
+    pub parts: Vec<PartReport>,
+    pub gaps: Vec<Gap>,
+    pub pair_checks: Vec<PairCheck>,
+    /// Always empty so far; see `molds_note`.
+    pub molds: Vec<Mold>,
+    pub molds_note: String,
+    pub findings: Vec<Finding>,
+}
+
+/// A mold; none can be made yet, so there is no value of this type.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub enum Mold {}
+
+impl Report {
+    /// The gravest severity among the findings.
+    pub fn worst(&self) -> Option<Severity> {
+        self.findings.iter().map(|f| f.severity).max()
+    }
+}
