@@ -1,3 +1,4 @@
+mod fab;
 mod bad_input;
 mod weave;
 mod plan;
