@@ -287,7 +287,9 @@ fn openscad_agrees_on_a_dovetail_and_sees_parts_that_overlap() {
     let dir = scratch("overlap");
     fs::create_dir_all(&dir).unwrap();
     let scad = OpenScad::new(&Programs::default().openscad, &dir).unwrap();
-    let same = scad.apart(&fixture("cube"), &fixture("cube"), DVec3::splat(10.0)).outcome;
+    let (cube, two) = (fixture("cube"), fixture("cubes-apart"));
+    let pairs = [(&*cube, &*cube), (&*cube, &*two)];
+    let same = scad.apart(&pairs, DVec3::splat(30.0)).swap_remove(0).outcome;
     assert!(
         matches!(&same, Outcome::NotRun(_))
             || matches!(&same, Outcome::Failed(w) if w.contains("share 1000")),

@@ -78,7 +78,8 @@ pub fn collect(report: &mut Report, scale: &Scale) {
     });
     report.findings.extend(found);
     report.findings.sort_by_key(|f| std::cmp::Reverse(f.severity));
-    report.findings.dedup();
+    let mut seen = std::collections::BTreeSet::new();
+    report.findings.retain(|f| seen.insert((f.place.parts.clone(), f.what.clone())));
 }
 
 fn of_gap(gap: &Gap) -> Option<Finding> {

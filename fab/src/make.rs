@@ -93,7 +93,7 @@ pub fn make(job: &Job, recipe: &Recipe, folder: &Path) -> Result<Report, FabErro
     batch.commit()?;
     let mut report = report(job, recipe, &scale, &pieces, gaps, folder);
     if let Some(programs) = &recipe.programs {
-        external::check_all(&mut report, &pieces, programs, folder);
+        external::check_all(&mut report, &pieces, programs);
     }
     findings::collect(&mut report, &scale);
     Ok(report)
