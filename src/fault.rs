@@ -25,6 +25,47 @@ impl Place {
     }
 }
 
+/// Finds the places of many bytes of one text, each in a time that does not grow with the text or its lines.
+pub struct Lines<'t> {
+    text: &'t str,
+    /// Bytes at which lines start.
+    starts: Vec<usize>,
+    /// Characters that start before byte `k * BLOCK`.
+    characters: Vec<usize>,
+}
+
+/// Bytes whose characters are counted for each place.
+const BLOCK: usize = 256;
+
+impl<'t> Lines<'t> {
+    pub fn new(text: &'t str) -> Lines<'t> {
+        let starts = std::iter::once(0).chain(text.match_indices('\n').map(|(at, _)| at + 1)).collect();
+        let mut characters = vec![0];
+        for block in text.as_bytes().chunks(BLOCK) {
+            characters.push(characters[characters.len() - 1] + count(block));
+        }
+        Lines { text, starts, characters }
+    }
+
+    /// The place of the byte `at`, as [`Place::of`] gives it.
+    pub fn place(&self, at: usize) -> Place {
+        let at = at.min(self.text.len());
+        let line = self.starts.partition_point(|&start| start <= at);
+        let column = self.before(at) - self.before(self.starts[line - 1]) + 1;
+        Place { line, column }
+    }
+
+    fn before(&self, at: usize) -> usize {
+        let block = at / BLOCK;
+        self.characters[block] + count(&self.text.as_bytes()[block * BLOCK..at])
+    }
+}
+
+/// Characters that start in these bytes of UTF-8.
+fn count(bytes: &[u8]) -> usize {
+    bytes.iter().filter(|&&byte| byte & 0xc0 != 0x80).count()
+}
+
 /// One thing that is wrong with an input file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Fault {

@@ -11,17 +11,29 @@ use std::path::Path;
 /// Largest spec, draft or WIF, in bytes (4 MiB): 512 x 512 crossings drawn in a file take a sixteenth of it.
 pub const MAX_BYTES: u64 = 4 << 20;
 
+/// Largest answer that is read back, in bytes (1 GiB): a lock of a million contact forces takes a quarter of it.
+pub const MAX_ANSWER_BYTES: u64 = 1 << 30;
+
 /// The bytes of the file, which must be a regular file, not empty, of at most [`MAX_BYTES`].
 pub fn bytes(path: &Path) -> Result<Vec<u8>, Faults> {
+    up_to(path, MAX_BYTES)
+}
+
+/// The bytes of an answer's file, of at most [`MAX_ANSWER_BYTES`].
+pub fn answer_bytes(path: &Path) -> Result<Vec<u8>, Faults> {
+    up_to(path, MAX_ANSWER_BYTES)
+}
+
+fn up_to(path: &Path, most: u64) -> Result<Vec<u8>, Faults> {
     let fault = |(what, hint): (String, &str)| Faults::from(about(path, None, what, hint));
     let meta = std::fs::metadata(path).map_err(|e| fault(unreadable(&e)))?;
-    refused(&meta).map_or(Ok(()), |why| Err(fault(why)))?;
+    refused(&meta, most).map_or(Ok(()), |why| Err(fault(why)))?;
     let mut bytes = Vec::new();
     let file = File::open(path).map_err(|e| fault(unreadable(&e)))?;
-    file.take(MAX_BYTES + 1).read_to_end(&mut bytes).map_err(|e| fault(unreadable(&e)))?;
+    file.take(most + 1).read_to_end(&mut bytes).map_err(|e| fault(unreadable(&e)))?;
     match bytes.len() as u64 {
         0 => Err(fault(("the file is empty".into(), "nothing was asked; see the example in the README"))),
-        size if size > MAX_BYTES => Err(fault(too_large(size))),
+        size if size > most => Err(fault(too_large(size, most))),
         _ => Ok(bytes),
     }
 }
@@ -48,7 +60,7 @@ fn without_mark(text: String) -> String {
     text.strip_prefix('\u{feff}').map(str::to_string).unwrap_or(text)
 }
 
-fn refused(meta: &Metadata) -> Option<(String, &'static str)> {
+fn refused(meta: &Metadata, most: u64) -> Option<(String, &'static str)> {
     if meta.is_dir() {
         return Some(("this is a directory, not a file".into(), "name the file inside it"));
     }
@@ -56,11 +68,11 @@ fn refused(meta: &Metadata) -> Option<(String, &'static str)> {
         let what = "this is a pipe or a device, not a file".into();
         return Some((what, "write it to a file first: places and relative paths need one"));
     }
-    (meta.len() > MAX_BYTES).then(|| too_large(meta.len()))
+    (meta.len() > most).then(|| too_large(meta.len(), most))
 }
 
-fn too_large(size: u64) -> (String, &'static str) {
-    let what = format!("the file has {size} bytes or more, the limit is {MAX_BYTES} (4 MiB)");
+fn too_large(size: u64, most: u64) -> (String, &'static str) {
+    let what = format!("the file has {size} bytes or more, the limit is {most} ({} MiB)", most >> 20);
     (what, "is this the right file? meshes are named in a spec, not passed instead of it")
 }
 

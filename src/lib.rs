@@ -8,14 +8,18 @@
 
 pub mod assembly;
 pub mod blocking;
+pub mod cli;
 pub mod contact;
+pub mod fabricate;
 pub mod fault;
+pub mod flex;
+pub mod input;
 pub mod locking;
 pub mod profile;
-pub mod sequence;
+pub mod repeats;
 pub mod report;
+pub mod sequence;
 pub mod sites;
-pub mod input;
 pub mod solid;
 pub mod spec;
 pub mod tile;

@@ -1,5 +1,6 @@
 mod fab;
 mod bad_input;
-mod weave;
+mod mesh;
 mod plan;
 mod report;
+mod weave;

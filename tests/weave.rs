@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use weavelock::weave::{
     Draft, Family, Float, Hand, Hanging, Kind, Origin, Strand, Weave, family, floats, hangs_together,
-    parse_drawn, parse_wif, to_wif,
+    parse_drawn, parse_wif, svg, terminal, to_wif,
 };
 
 fn fixture(name: &str) -> Weave {
@@ -70,6 +70,9 @@ fn families_by_name() {
     assert_eq!(family(&abc(6, 7, 4)), Family::Other);
     assert_eq!(family(&drawn(&["XX.X.", ".XX.X", "X.XX.", ".X.XX", "X.X.X"])), twill(Hand::Z, &[2, 1, 1, 1]));
     assert_eq!(family(&drawn(&["XX", "XX"])), Family::Other);
+    let names = [(1, 1, 1), (2, 2, 1), (3, 1, -1), (7, 1, 3), (6, 7, 4)]
+        .map(|(a, b, c)| family(&abc(a, b, c)).to_string());
+    assert_eq!(names, ["plain", "twill Z 2/2", "twill S 3/1", "satin, step 3, weft face", "other"]);
     assert_eq!(family(&fixture("satin-4-irregular.draft").draft), Family::Other);
 }
 
@@ -209,4 +212,74 @@ fn weaves_on_the_command_line() {
         assert!(weave(text).is_err(), "{text}");
     }
     assert_eq!(Weave::abc(0, 65, 1).map_err(|f| f.0.len()), Err(2), "both faults at once");
+}
+
+#[test]
+fn terminal_drawing_shows_the_draft() {
+    let drawing = terminal(&abc(2, 2, 1), 80);
+    let lines: Vec<&str> = drawing.lines().collect();
+    assert_eq!(lines[0], "   7  ══┃┃┃┃══ ══┃┃┃┃══");
+    assert_eq!(lines[4], "     ┌────────┐");
+    assert_eq!(lines[8], "   0 │════┃┃┃┃│════┃┃┃┃");
+    assert_eq!(lines[9], "     └────────┘");
+    assert_eq!(lines[10], "       0 1 2 3  4 5 6 7");
+    for (draft, width) in
+        [(abc(64, 64, 63), 60), (abc(64, 64, 1), 0), (abc(1, 1, 1), 1), (drawn(&["X"]), 300)]
+    {
+        let drawing = terminal(&draft, width);
+        let drawn = drawing.lines().filter(|line| !line.contains("weft over"));
+        assert!(drawn.map(|line| line.chars().count()).max() <= Some(width.max(9)), "{drawing}");
+    }
+    assert!(terminal(&abc(64, 64, 63), 60).contains("only a part"));
+}
+
+#[test]
+fn svg_has_a_mark_for_each_crossing() {
+    for draft in [abc(1, 1, 1), abc(7, 1, 3), abc(3, 3, 2)] {
+        let picture = svg(&draft);
+        let paper = picture.split("point-paper").nth(1).expect("it has a point paper");
+        let (filled, blank) =
+            (paper.matches("#222222\" stroke").count(), paper.matches("#ffffff\" stroke").count());
+        let overs = draft.rows().concat().matches('X').count();
+        assert_eq!(filled * draft.rows().concat().len(), overs * (filled + blank));
+        assert!(filled + blank >= 64);
+    }
+    assert!(svg(&abc(64, 64, 63)).contains("larger than this picture"));
+}
+
+/// Real files say `LIFTPLAN=no`, leave values blank, write 0 for none, and promise colors that they lack.
+#[test]
+fn wif_files_of_other_programs_are_read() {
+    let head =
+        "\n[WIF]\n[Version=1.1]\nDate=today\n[CONTENTS]\nWARP COLORS=true\nTIEUP=true\nLIFTPLAN=false\n";
+    let loom = "[WEAVING]\nTreadles=6\nShafts=4\n[WARP]\nThreads=5\nUnits=centimeters\n[WEFT]\nThreads=6\n";
+    let draft = "[THREADING]\n1=2\n2=3\n3=4\n4=\n5=1\n[TIEUP]\n1=1,3\n2=2,4\n3=1\n4=2\n5=3\n6=4\n\
+                 [TREADLING]\n1=1,6\n2=5\n3=2,3,4\n4=0,1,4\n5=5,6\n6=3\n[LIFTPLAN]\n";
+    let read =
+        |shed: &str| parse_wif(&format!("{head}{loom}{shed}{draft}"), Path::new("")).map(|w| w.draft.rows());
+    let rows = ["X..X.", "X.XXX", ".X.X.", "..XX.", "X..XX", "XXXX."];
+    assert_eq!(read("").expect("rising"), rows);
+    let other: Vec<String> =
+        rows.iter().map(|row| row.chars().map(|c| if c == 'X' { '.' } else { 'X' }).collect()).collect();
+    // A thread on no shaft stays down in a rising shed; in a sinking one it stays up.
+    let sinking = format!("{head}{}{draft}", loom.replace("Shafts=4\n", "Shafts=4\nRising Shed=no\n"));
+    assert_eq!(parse_wif(&sinking, Path::new("")).expect("sinking").draft.rows(), other);
+}
+
+/// The largest draft that is taken, of random crossings: every question is answered, in a time that a person waits.
+#[test]
+fn the_largest_draft_is_dealt_with() {
+    let mut state = 1u64;
+    let mut mark = || {
+        state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        if state >> 63 == 1 { 'X' } else { '.' }
+    };
+    let rows: Vec<String> = (0..512).map(|_| (0..512).map(|_| mark()).collect()).collect();
+    let start = std::time::Instant::now();
+    let draft = drawn(&rows.iter().map(String::as_str).collect::<Vec<_>>());
+    assert_eq!((draft.wefts(), draft.warps(), family(&draft)), (512, 512, Family::Other));
+    assert_eq!(hangs_together(&draft), Hanging::Together);
+    assert_eq!(parse_wif(&to_wif(&draft, ""), Path::new("")).expect("written").draft, draft);
+    println!("512 x 512: {:?}", start.elapsed());
+    assert!(Draft::drawn(&vec!["X"; 513]).is_err() && Draft::drawn(&[&"X".repeat(513)]).is_err());
 }

@@ -4,6 +4,7 @@
 
 pub mod layout;
 pub mod mesh;
+pub mod read;
 pub mod woven;
 
 use crate::solid::{Cell, Solid};

@@ -1,9 +1,15 @@
-//! Takes an assembly, gives contact patches between parts.
+//! Takes a spec; gives the assembly that it describes, with the contact patches between its parts.
+//!
+//! Between woven tiles contacts are known by identity of sites; between meshes they are searched within the user's
+//! tolerance. Not promised: contacts of meshes that lie farther apart than the tolerance, or have no normal.
 
 pub mod mesh;
 pub mod woven;
 
-use crate::assembly::PartIx;
+use crate::assembly::woven::Woven;
+use crate::assembly::{Assembly, PartIx, read};
+use crate::fault::Faults;
+use crate::spec::{MeshSpec, Spec, Subject};
 use glam::DVec3;
 
 /// A planar convex polygon on which part `a` and part `b` touch, in the assembly's frame.
@@ -14,4 +20,52 @@ pub struct Patch {
     /// Unit normal from `a` to `b`.
     pub normal: DVec3,
     pub corners: Vec<DVec3>,
+}
+
+/// Parts in place, and where they touch.
+pub struct Joined {
+    pub assembly: Assembly,
+    pub patches: Vec<Patch>,
+    pub origin: Origin,
+    /// What was taken in good faith, in words.
+    pub remarks: Vec<String>,
+}
+
+/// What the parts were made from.
+pub enum Origin {
+    Woven(Box<Woven>),
+    Meshes,
+}
+
+/// Builds the assembly of a spec and finds its contacts.
+pub fn join(spec: &Spec) -> Result<Joined, Faults> {
+    match &spec.subject {
+        Subject::Woven(woven) => {
+            let woven = crate::assembly::woven::build(spec, woven)?;
+            let patches = woven::patches(&woven);
+            let assembly = woven.assembly.clone();
+            Ok(Joined { assembly, patches, origin: Origin::Woven(Box::new(woven)), remarks: Vec::new() })
+        }
+        Subject::Meshes(meshes) => join_meshes(spec, meshes),
+    }
+}
+
+fn join_meshes(spec: &Spec, meshes: &MeshSpec) -> Result<Joined, Faults> {
+    let (assembly, mut remarks) = read::assembly(spec, meshes)?;
+    let tolerance = meshes.tolerance_mm / meshes.mm_per_unit;
+    let found = mesh::mesh_patches(&assembly, tolerance).map_err(|overlaps| {
+        let fault = |o: &mesh::Overlap| {
+            let hint =
+                "move the parts apart, or raise [contact] tolerance if the overlap is not meant to count";
+            spec.fault(&format!("part[{}]", o.b.at()), o.to_string(), hint)
+        };
+        Faults(overlaps.0.iter().map(fault).collect())
+    })?;
+    if !found.assumed.is_empty() {
+        remarks.push(format!(
+            "{} contacts have no normal of their own and got no row: safe for locked, not for free",
+            found.assumed.len()
+        ));
+    }
+    Ok(Joined { assembly, patches: found.patches, origin: Origin::Meshes, remarks })
 }

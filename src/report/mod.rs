@@ -3,8 +3,11 @@
 //! Not promised: any finding of its own. Words and numbers are printed as given; what a caller leaves out is shown as
 //! not run, never as passed.
 
+pub mod answer;
 pub mod content;
 pub mod draw;
+pub mod export;
 pub mod file;
 pub mod page;
 pub mod text;
+pub mod words;

@@ -120,7 +120,7 @@ impl Paper {
         for (name, value) in facts {
             let name = clean(name);
             let lines = wrap(&clean(value), self.width - INDENT - edge);
-            let fits = name.chars().count() + 1 <= edge;
+            let fits = name.chars().count() < edge;
             if !fits {
                 self.styled(INDENT, &name, Style::Faint);
             }

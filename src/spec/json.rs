@@ -83,7 +83,7 @@ impl Cursor<'_> {
     fn word(&mut self) -> Read<Value> {
         let words = [("true", Value::Flag(true)), ("false", Value::Flag(false)), ("null", Value::Null)];
         let found = words.into_iter().find(|(word, _)| self.text[self.at..].starts_with(word));
-        let hint = "a value is a number, a string in double quotes, true, false, a list or an object";
+        let hint = "a value is a number, a string in double quotes, true, false, a list or an object; JSON has no NaN";
         let (word, value) = found.ok_or_else(|| self.fault("a value is wanted here", hint))?;
         self.at += word.len();
         Ok(value)

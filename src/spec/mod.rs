@@ -9,6 +9,7 @@ mod pieces;
 mod points;
 mod read;
 mod reader;
+pub mod shape;
 mod tree;
 mod units;
 mod woven;

@@ -36,10 +36,12 @@ pub fn pieces<'t>(
         return None;
     }
     let read: Vec<_> = items.iter().map(|item| piece(reader, item)).collect();
+    let known = read.iter().enumerate().filter_map(|(at, piece)| Some((at, piece.as_ref()?.0))).collect();
+    let apart = apart(reader, &items, &known);
     let all: Vec<_> = read.into_iter().collect::<Option<_>>()?;
     let pieces: Vec<PieceSpec> = all.iter().map(|(piece, _)| *piece).collect();
     let held = all.into_iter().enumerate().filter_map(|(at, (_, held))| Some((at, held?))).collect();
-    apart(reader, &items, &pieces).then_some((pieces, held))
+    apart.then_some((pieces, held))
 }
 
 fn piece<'t>(reader: &mut Reader<'t>, item: &Field<'t>) -> Option<(PieceSpec, Option<Field<'t>>)> {
@@ -76,21 +78,21 @@ fn index<'t>(reader: &mut Reader<'t>, field: &Field<'t>) -> Option<i32> {
 }
 
 /// Notes pieces that overlap others of their strand; whether there are none.
-fn apart<'t>(reader: &mut Reader<'t>, items: &[Field<'t>], pieces: &[PieceSpec]) -> bool {
-    let mut order: Vec<usize> = (0..pieces.len()).collect();
-    order.sort_by_key(|&at| (pieces[at].strand, pieces[at].from, at));
+fn apart<'t>(reader: &mut Reader<'t>, items: &[Field<'t>], pieces: &BTreeMap<usize, PieceSpec>) -> bool {
+    let mut order: Vec<usize> = pieces.keys().copied().collect();
+    order.sort_by_key(|at| (pieces[at].strand, pieces[at].from, *at));
     let mut clean = true;
     let mut reach: Option<usize> = None;
     for at in order {
-        let here = pieces[at];
-        let before = reach.filter(|&before| pieces[before].strand == here.strand);
-        if let Some(before) = before.filter(|&before| here.from < pieces[before].to) {
+        let here = pieces[&at];
+        let before = reach.filter(|&before| pieces[&before].strand == here.strand);
+        if let Some(before) = before.filter(|&before| here.from < pieces[&before].to) {
             let (late, early) = (at.max(before), at.min(before));
             let what = format!("overlaps piece[{early}] on {}", here.strand);
             reader.fault(&items[late], what, "two pieces cannot be in one place; `to` is not included");
             clean = false;
         }
-        reach = before.filter(|&before| pieces[before].to > here.to).or(Some(at));
+        reach = before.filter(|&before| pieces[&before].to > here.to).or(Some(at));
     }
     clean
 }
@@ -98,8 +100,13 @@ fn apart<'t>(reader: &mut Reader<'t>, items: &[Field<'t>], pieces: &[PieceSpec])
 /// Which parts are held by a list of ids or "rim"; with the fields of the ids.
 pub fn held_list<'t>(reader: &mut Reader<'t>, field: &Field<'t>) -> Option<(HeldSpec, Vec<Field<'t>>)> {
     let hint = "a list of part ids, as in held = [\"weft-0\"], or \"rim\" for every part at the edge";
-    if field.is_text() {
-        return reader.choice(field, &[("rim", ())]).map(|()| (HeldSpec::Rim, Vec::new()));
+    match field.as_text() {
+        Some("rim") => return Some((HeldSpec::Rim, Vec::new())),
+        Some(word) => {
+            reader.fault(field, format!("{} is neither a list nor \"rim\"", shown(word)), hint);
+            return None;
+        }
+        None => {}
     }
     let items = reader.list(field, hint)?;
     let ids: Vec<Option<&str>> = items.iter().map(|item| reader.text(item, hint)).collect();
@@ -115,18 +122,16 @@ pub fn held_list<'t>(reader: &mut Reader<'t>, field: &Field<'t>) -> Option<(Held
     (seen.len() == items.len()).then_some((held, items))
 }
 
-/// Which pieces are held: by their own flags (`flags`, by index), or by a list or "rim" (`outer`).
+/// Which pieces are held: by their own flags (`flags`, by index), and by a list or "rim" (`outer`, from
+/// [`held_list`]).
 pub fn held_pieces<'t>(
     reader: &mut Reader<'t>,
     pieces: &[PieceSpec],
     flags: BTreeMap<usize, Field<'t>>,
-    outer: Option<Field<'t>>,
+    outer: Option<(HeldSpec, Vec<Field<'t>>)>,
 ) -> Option<HeldSpec> {
     let ids = piece_ids(pieces);
-    let (held, items) = match &outer {
-        Some(field) => held_list(reader, field)?,
-        None => (HeldSpec::None, Vec::new()),
-    };
+    let (held, items) = outer.unwrap_or((HeldSpec::None, Vec::new()));
     let mut named: BTreeSet<String> = flags.keys().map(|&at| ids[at].clone()).collect();
     match held {
         HeldSpec::Rim if flags.is_empty() => return Some(HeldSpec::Rim),
@@ -145,11 +150,15 @@ pub fn held_pieces<'t>(
     Some(if in_order.is_empty() { HeldSpec::None } else { HeldSpec::Parts(in_order) })
 }
 
+/// Ids among which one that was meant is looked for.
+const GUESSED: usize = 100;
+
 fn exist(reader: &mut Reader<'_>, parts: &[String], items: &[Field<'_>], ids: &[String]) -> Option<()> {
     let known: BTreeSet<&str> = ids.iter().map(String::as_str).collect();
     let mut all = Some(());
     for (part, item) in parts.iter().zip(items).filter(|(part, _)| !known.contains(part.as_str())) {
-        let near = nearest(part, &ids.iter().map(String::as_str).collect::<Vec<_>>());
+        let few = &ids[..ids.len().min(GUESSED)];
+        let near = nearest(part, &few.iter().map(String::as_str).collect::<Vec<_>>());
         let first = || format!("parts are named as {}", shown(&ids[0]));
         let hint = near.map_or_else(first, |near| format!("did you mean {}?", shown(near)));
         reader.fault(item, format!("there is no part {}", shown(part)), hint);

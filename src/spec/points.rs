@@ -70,7 +70,7 @@ fn run_lengths(reader: &mut Reader<'_>, field: &Field<'_>, weave: &Weave) -> Opt
         Ok(wave) => return Some(wave),
         Err(odd) => odd,
     };
-    let what = format!("one curve cannot draw this weave: {odd} differs");
+    let what = format!("one curve cannot draw this weave: {odd} has other runs");
     let hint = "points need wefts that all pass over a and under b crossings in turn, and warps under a and over b; \
                 use `rise` instead";
     reader.fault(field, what, hint);

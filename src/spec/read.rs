@@ -21,7 +21,11 @@ impl Syntax {
     /// JSON where the file's name ends in `.json` or its text begins with a brace (no TOML does), else TOML.
     pub fn of(file: &Path, text: &str) -> Syntax {
         let named = file.extension().is_some_and(|end| end.eq_ignore_ascii_case("json"));
-        if named || text.trim_start().starts_with('{') { Syntax::Json } else { Syntax::Toml }
+        if named || text.trim_start_matches('\u{feff}').trim_start().starts_with('{') {
+            Syntax::Json
+        } else {
+            Syntax::Toml
+        }
     }
 
     fn tree(self, text: &str) -> (Table, Vec<SyntaxFault>) {
@@ -41,6 +45,7 @@ pub fn read(path: &Path) -> Result<Spec, Faults> {
 
 /// Reads a spec's text; `file` names it in faults, and the files that it names are relative to the folder of `file`.
 pub fn parse(text: &str, file: &Path, syntax: Syntax) -> Result<Spec, Faults> {
+    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     let (table, faults) = syntax.tree(text);
     let mut reader = Reader::new(text, file.to_path_buf(), faults);
     let root = reader.root(&table);
@@ -53,33 +58,34 @@ const WOVEN_KEYS: [&str; 8] = ["name", "weave", "profile", "swatch", "piece", "h
 const MESH_KEYS: [&str; 5] = ["name", "part", "contact", "size", "fab"];
 
 /// Keys that someone may write outside of their table.
-const HOMES: [(&str, &str); 26] = [
-    ("abc", "`abc` belongs into [weave]"),
-    ("draft", "`draft` belongs into [weave]"),
-    ("wif", "`wif` belongs into [weave]"),
-    ("rise", "`rise` belongs into [profile]"),
-    ("lift", "`lift` belongs into [profile]"),
-    ("cover", "`cover` belongs into [profile]"),
-    ("samples", "`samples` belongs into [profile]"),
-    ("points", "`points` belongs into [profile]"),
-    ("bounds", "`bounds` belongs into [profile]"),
-    ("wefts", "`wefts` belongs into [swatch]"),
-    ("warps", "`warps` belongs into [swatch]"),
-    ("cut", "`cut` belongs into [swatch]"),
-    ("repeat", "`repeat` belongs into [swatch]"),
-    ("phase", "`phase` belongs into [swatch]"),
-    ("weft", "`weft` belongs into [[piece]]"),
-    ("warp", "`warp` belongs into [[piece]]"),
-    ("from", "`from` belongs into [[piece]]"),
-    ("to", "`to` belongs into [[piece]]"),
-    ("pitch", "`pitch` belongs into [size] of a woven assembly"),
-    ("unit", "`unit` belongs into [size] of an assembly of meshes"),
-    ("tolerance", "`tolerance` belongs into [contact] of an assembly of meshes"),
-    ("mesh", "`mesh` belongs into [[part]] of an assembly of meshes"),
-    ("at", "`at` belongs into [[part]] of an assembly of meshes"),
-    ("process", "`process` belongs into [fab]"),
-    ("clearance", "`clearance` belongs into [fab]"),
-    ("shrinkage", "`shrinkage` belongs into [fab]"),
+const HOMES: [(&str, &str); 27] = [
+    ("held", "`held` stands in [swatch], in a [[piece]] or [[part]], or at the top before the first table"),
+    ("abc", "`abc` belongs in [weave]"),
+    ("draft", "`draft` belongs in [weave]"),
+    ("wif", "`wif` belongs in [weave]"),
+    ("rise", "`rise` belongs in [profile]"),
+    ("lift", "`lift` belongs in [profile]"),
+    ("cover", "`cover` belongs in [profile]"),
+    ("samples", "`samples` belongs in [profile]"),
+    ("points", "`points` belongs in [profile]"),
+    ("bounds", "`bounds` belongs in [profile]"),
+    ("wefts", "`wefts` belongs in [swatch]"),
+    ("warps", "`warps` belongs in [swatch]"),
+    ("cut", "`cut` belongs in [swatch]"),
+    ("repeat", "`repeat` belongs in [swatch]"),
+    ("phase", "`phase` belongs in [swatch]"),
+    ("weft", "`weft` belongs in [[piece]]"),
+    ("warp", "`warp` belongs in [[piece]]"),
+    ("from", "`from` belongs in [[piece]]"),
+    ("to", "`to` belongs in [[piece]]"),
+    ("pitch", "`pitch` belongs in [size] of a woven assembly"),
+    ("unit", "`unit` belongs in [size] of an assembly of meshes"),
+    ("tolerance", "`tolerance` belongs in [contact] of an assembly of meshes"),
+    ("mesh", "`mesh` belongs in [[part]] of an assembly of meshes"),
+    ("at", "`at` belongs in [[part]] of an assembly of meshes"),
+    ("process", "`process` belongs in [fab]"),
+    ("clearance", "`clearance` belongs in [fab]"),
+    ("shrinkage", "`shrinkage` belongs in [fab]"),
 ];
 
 /// Where a key belongs that is unknown where it stands.
@@ -97,9 +103,8 @@ fn whole<'t>(reader: &mut Reader<'t>, root: &Fields<'t>) -> Option<(String, Subj
         }
         None => {
             reader.only(root, &WOVEN_KEYS, woven_home);
-            let woven = woven::woven(reader, root);
-            let pitch = woven.as_ref().map(|spec| spec.pitch_mm);
-            (woven.map(Subject::Woven), pitch)
+            let pitch = woven::pitch(reader, root);
+            (woven::woven(reader, root, pitch).map(Subject::Woven), pitch)
         }
     };
     let fab = match reader.get(root, "fab") {
@@ -133,13 +138,17 @@ fn name<'t>(reader: &mut Reader<'t>, root: &Fields<'t>) -> Option<String> {
         return Some(stem.unwrap_or_default());
     };
     let name = reader.text(&field, "the name of the assembly")?;
+    if name.contains('/') {
+        reader.fault(&field, "has a slash", "files are named after it, and they all lie in one folder");
+        return None;
+    }
     plain_name(reader, &field, name)
 }
 
 /// Longest name and id, in bytes, so that a file can be named after it with room for an ending.
 const MAX_NAME: usize = 200;
 
-/// A name that may become a file's: refused are control characters, and segments that lead out of a folder.
+/// A name that may become a file's, an id's slashes standing for folders: refused are control characters, and segments that lead out of a folder.
 pub fn plain_name(reader: &mut Reader<'_>, field: &Field, name: &str) -> Option<String> {
     let leads_out = |part: &str| part.trim().is_empty() || part == "." || part == "..";
     let what = if name.len() > MAX_NAME {
@@ -199,12 +208,23 @@ fn clearance<'t>(reader: &mut Reader<'t>, field: &Field<'t>, width: Option<f64>)
     }
 }
 
+/// Steps from the file to the finished part; a chain has four.
+const MAX_STEPS: usize = 100;
+
 fn shrinkage<'t>(reader: &mut Reader<'t>, field: &Field<'t>) -> Option<BTreeMap<String, f64>> {
     let fields = reader.table(field)?;
+    if fields.keys().count() > MAX_STEPS {
+        reader.fault(
+            field,
+            format!("has more than {MAX_STEPS} steps"),
+            "a step is one process after another",
+        );
+        return None;
+    }
     let mut steps = Some(BTreeMap::new());
     for step in fields.keys() {
         let why = "no step known shrinks by more than 5 %; beyond 20 % it is a slip";
-        let share = reader.get(&fields, step).and_then(|field| reader.share(&field, 0.0..=0.2, why));
+        let share = reader.get(&fields, step).and_then(|field| reader.share(&field, 0.0..=20.0, why));
         steps = steps.zip(share).map(|(mut steps, share)| {
             steps.insert(step.to_string(), share);
             steps

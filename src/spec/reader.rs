@@ -4,8 +4,8 @@
 
 use super::Places;
 use super::tree::{Node, SyntaxFault, Table, Value};
-use super::units::{Wrong, fraction, millimetres};
-use crate::fault::{Fault, Faults, Place};
+use super::units::{Wrong, millimetres, percent};
+use crate::fault::{Fault, Faults, Lines, Place};
 use std::collections::BTreeSet;
 use std::fmt::Display;
 use std::ops::{Bound, RangeBounds, RangeInclusive};
@@ -28,8 +28,11 @@ pub struct Fields<'t> {
 }
 
 impl Field<'_> {
-    pub fn is_text(&self) -> bool {
-        matches!(self.value, Value::Text(_))
+    pub fn as_text(&self) -> Option<&str> {
+        match self.value {
+            Value::Text(text) => Some(text),
+            _ => None,
+        }
     }
 }
 
@@ -39,10 +42,11 @@ impl<'t> Fields<'t> {
     }
 }
 
+/// Faults of one file that are kept.
+const MAX_FAULTS: usize = 1000;
+
 pub struct Reader<'t> {
-    text: &'t str,
-    /// Byte offsets at which lines start.
-    lines: Vec<usize>,
+    lines: Lines<'t>,
     pub file: PathBuf,
     faults: Vec<Fault>,
     places: Places,
@@ -52,10 +56,8 @@ pub struct Reader<'t> {
 
 impl<'t> Reader<'t> {
     pub fn new(text: &'t str, file: PathBuf, syntax: Vec<SyntaxFault>) -> Reader<'t> {
-        let lines = std::iter::once(0).chain(text.match_indices('\n').map(|(at, _)| at + 1)).collect();
         let mut reader = Reader {
-            text,
-            lines,
+            lines: Lines::new(text),
             file,
             faults: Vec::new(),
             places: Places::default(),
@@ -78,13 +80,12 @@ impl<'t> Reader<'t> {
     }
 
     fn place(&self, at: usize) -> Place {
-        let line = self.lines.partition_point(|&start| start <= at).max(1) - 1;
-        let inner = Place::of(&self.text[self.lines[line]..], at - self.lines[line]);
-        Place { line: line + 1, column: inner.column }
+        self.lines.place(at)
     }
 
     fn note(&mut self, place: Option<Place>, key: &str, what: impl Into<String>, hint: impl Into<String>) {
-        if place.is_some_and(|place| self.broken.contains(&place.line)) {
+        let broken = place.is_some_and(|place| self.broken.contains(&place.line));
+        if broken || self.faults.len() == MAX_FAULTS {
             return;
         }
         let file = self.file.display().to_string();
@@ -158,6 +159,10 @@ impl<'t> Reader<'t> {
                 (None, None) => format!("known here: {}", known.join(", ")),
             };
             let place = self.place(key.at);
+            // Behind a table header that is broken, keys seem to stand at the top.
+            if fields.path.is_empty() && self.broken.first().is_some_and(|&line| line < place.line) {
+                continue;
+            }
             self.note(Some(place), &fields.path, format!("unknown key {}", shown(&key.name)), hint);
         }
     }
@@ -223,10 +228,10 @@ impl<'t> Reader<'t> {
         self.within(field, mm, " mm", range, why)
     }
 
-    /// Fraction of a share with its percent sign, in the range.
+    /// Fraction of a share with its percent sign; the range is in percent.
     pub fn share(&mut self, field: &Field<'t>, range: impl RangeBounds<f64>, why: &str) -> Option<f64> {
-        let share = self.quantity(field, "\"0.2 %\"", fraction)?;
-        self.within(field, share, "", range, why)
+        let share = self.quantity(field, "\"0.2 %\"", percent)?;
+        self.within(field, share, " %", range, why).map(|percent| percent / 100.0)
     }
 
     fn quantity(

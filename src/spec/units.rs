@@ -1,4 +1,4 @@
-//! Takes a length or a share as a string with its unit; gives millimetres or a fraction, or what is wrong.
+//! Takes a length or a share as a string with its unit; gives millimetres or percent, or what is wrong.
 //!
 //! Not promised: that the value is sensible; the caller knows its bounds.
 
@@ -29,11 +29,11 @@ pub fn millimetres(text: &str) -> Result<f64, Wrong> {
     }
 }
 
-/// Fraction of a share such as `0.2 %`.
-pub fn fraction(text: &str) -> Result<f64, Wrong> {
+/// Percent of a share such as `0.2 %`.
+pub fn percent(text: &str) -> Result<f64, Wrong> {
     let value = text.trim().strip_suffix('%').and_then(|number| quantity(number.trim()));
     let hint = "a share is a number and a percent sign, as in \"0.2 %\"".to_string();
-    value.map(|percent| percent / 100.0).ok_or_else(|| (format!("{text:?} is not a share"), hint))
+    value.ok_or_else(|| (format!("{text:?} is not a share"), hint))
 }
 
 /// Millimetres of a bare unit of length.
@@ -73,10 +73,10 @@ mod tests {
 
     #[test]
     fn shares_need_their_sign() {
-        assert_eq!(fraction("50 %"), Ok(0.5));
-        assert_eq!(fraction("0.25%"), Ok(0.0025));
+        assert_eq!(percent("50 %"), Ok(50.0));
+        assert_eq!(percent("0.25%"), Ok(0.25));
         for text in ["", "%", "0.2", "0.2 %%", "nan %", "inf%"] {
-            assert!(fraction(text).is_err(), "{text}");
+            assert!(percent(text).is_err(), "{text}");
         }
     }
 }

@@ -27,7 +27,8 @@ const MAX_PITCH_MM: f64 = 10_000.0;
 /// Taken where [size] is absent, in mm; no verdict depends on it.
 const DEFAULT_PITCH_MM: f64 = 20.0;
 
-pub fn woven<'t>(reader: &mut Reader<'t>, root: &Fields<'t>) -> Option<WovenSpec> {
+/// The assembly, where `pitch` (in mm) could be read.
+pub fn woven<'t>(reader: &mut Reader<'t>, root: &Fields<'t>, pitch: Option<f64>) -> Option<WovenSpec> {
     let weave = match reader.get(root, "weave") {
         Some(field) => weave(reader, &field),
         None => {
@@ -39,7 +40,6 @@ pub fn woven<'t>(reader: &mut Reader<'t>, root: &Fields<'t>) -> Option<WovenSpec
         Some(field) => profile(reader, &field, weave.as_ref()),
         None => Some(DEFAULT_PROFILE),
     };
-    let pitch = pitch(reader, root);
     let layout = layout(reader, root);
     let (layout, held) = layout.unzip();
     if let (Some(weave), Some(profile), Some(layout)) = (&weave, &profile, &layout) {
@@ -128,9 +128,8 @@ fn profile<'t>(reader: &mut Reader<'t>, field: &Field<'t>, weave: Option<&Weave>
         Some(field) => reader.number(&field, (MORE_THAN_NONE, MOST_LIFT), why),
         None => Some(default),
     };
-    let lift = height("lift", DEFAULT_PROFILE.lift, "the height of an over above an under, in crossings");
-    let cover =
-        height("cover", DEFAULT_PROFILE.cover, "the distance of the sandwiching planes, in crossings");
+    let lift = height("lift", DEFAULT_PROFILE.lift, LIFT_WHY);
+    let cover = height("cover", DEFAULT_PROFILE.cover, COVER_WHY);
     let samples = match reader.get(&fields, "samples") {
         Some(field) => reader.integer(&field, 2..=64, SAMPLES_WHY).map(|n| n as u32),
         None => Some(DEFAULT_PROFILE.samples),
@@ -146,6 +145,7 @@ fn profile<'t>(reader: &mut Reader<'t>, field: &Field<'t>, weave: Option<&Weave>
                 "stands beside `rise`",
                 "points draw the whole centerline; leave one of them",
             );
+            self::points(reader, &points, weave, lift, cover);
             None
         }
         (Some(rise), None) => {
@@ -164,10 +164,17 @@ const MORE_THAN_NONE: Bound<f64> = Excluded(0.0);
 /// Beyond six crossings a tile is a comb of needles.
 const MOST_LIFT: Bound<f64> = Included(6.0);
 
+const LIFT_WHY: &str = "the height of an over above an under, in crossings: without it nothing is woven, beyond six a \
+     tile is a comb of needles";
+
+const COVER_WHY: &str = "the distance of the sandwiching planes from the centerlines, in crossings: without it strands \
+     have no thickness there";
+
 const SAMPLES_WHY: &str = "with one site in a crossing the cells of a strand that changes side meet in an edge \
      only, and the tile is not one body; beyond 64 nothing changes but the time";
 
-fn pitch<'t>(reader: &mut Reader<'t>, root: &Fields<'t>) -> Option<f64> {
+/// Millimetres in one crossing.
+pub fn pitch<'t>(reader: &mut Reader<'t>, root: &Fields<'t>) -> Option<f64> {
     let Some(field) = reader.get(root, "size") else { return Some(DEFAULT_PITCH_MM) };
     let fields = reader.table(&field)?;
     reader.only(&fields, &["pitch"], home);
@@ -184,14 +191,21 @@ fn pitch<'t>(reader: &mut Reader<'t>, root: &Fields<'t>) -> Option<f64> {
 fn layout<'t>(reader: &mut Reader<'t>, root: &Fields<'t>) -> Option<(Layout, HeldSpec)> {
     let held = reader.get(root, "held");
     match (reader.get(root, "swatch"), reader.get(root, "piece")) {
-        (Some(_), Some(piece)) => {
+        (Some(field), Some(piece)) => {
             reader.fault(&piece, "stands beside [swatch]", "either a regular swatch or pieces one by one");
+            swatch(reader, &field, None);
+            pieces(reader, &piece);
             None
         }
         (Some(field), None) => swatch(reader, &field, held),
         (None, Some(field)) => {
-            let (pieces, flags) = pieces(reader, &field)?;
-            let held = held_pieces(reader, &pieces, flags, held)?;
+            let pieces = pieces(reader, &field);
+            let held = match held {
+                Some(field) => held_list(reader, &field).map(Some),
+                None => Some(None),
+            };
+            let (pieces, flags) = pieces?;
+            let held = held_pieces(reader, &pieces, flags, held?)?;
             Some((Layout::Pieces(pieces), held))
         }
         (None, None) => {

@@ -1,3 +1,140 @@
-//! Re-checks answers without the code that made them.
+//! Takes an answer as written; says whether it holds, without the solver or planner that made it.
+//!
+//! The spec in the answer is read again and its contacts built again, so an answer about other contacts is refused.
+//! Not promised: that the spec is the one its reader meant.
 
+pub mod certificate;
+mod field;
 pub mod plan;
+
+use crate::assembly::PartIx;
+use crate::contact::{self, Joined};
+use crate::fault::Faults;
+use crate::report::answer::{self, CheckAnswer, PlanAnswer, Sealed, Source};
+use crate::sequence::Outcome;
+use crate::spec::{self, Syntax};
+use certificate::About;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use std::path::Path;
+
+/// Answer of `verify`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct Verified {
+    pub verb: String,
+    pub valid: bool,
+    pub why: String,
+}
+
+/// Reads the spec of an answer again and holds the answer against it.
+pub fn answer(sealed: &Sealed) -> Result<Verified, Faults> {
+    let source = match sealed {
+        Sealed::Check(a) => &a.source,
+        Sealed::Plan(a) => &a.source,
+    };
+    let joined = rebuild(source)?;
+    let (found, good) = match sealed {
+        Sealed::Check(a) => (check(&joined, a), format!("the {} verdict and its proofs hold", word(a))),
+        Sealed::Plan(a) => (plan(&joined, a), "every move and every proof of the plan holds".to_string()),
+    };
+    let (valid, why) = found.map_or_else(|why| (false, why), |()| (true, good));
+    Ok(Verified { verb: "verify".into(), valid, why })
+}
+
+fn word(a: &CheckAnswer) -> &'static str {
+    match a.rigid.verdict {
+        answer::Word::Locked => "locked",
+        answer::Word::Free => "free",
+        answer::Word::Undecided => "undecided",
+    }
+}
+
+fn rebuild(source: &Source) -> Result<Joined, Faults> {
+    let file = Path::new(&source.file);
+    contact::join(&spec::parse(&source.text, file, Syntax::of(file, &source.text))?)
+}
+
+fn check(joined: &Joined, a: &CheckAnswer) -> Result<(), String> {
+    sealed(&a.checksum, &CheckAnswer { checksum: String::new(), ..a.clone() })?;
+    let asm = &joined.assembly;
+    let rows = joined.patches.iter().map(|p| p.corners.len()).sum::<usize>();
+    let held = answer::ids(asm, &asm.held().collect::<Vec<_>>());
+    same("parts", a.parts, asm.parts.len())?;
+    same("contacts", a.contacts, joined.patches.len())?;
+    same("rows", a.rows, rows)?;
+    same("held", &a.held, &held)?;
+    same("verb", a.verb.as_str(), "check")?;
+    same("translation", a.translation, a.translation_proof.verdict)?;
+    let still: Vec<String> = match (&a.fixed, held.is_empty()) {
+        (Some(id), true) => vec![id.clone()],
+        (None, false) => held,
+        _ => return Err("a part is fixed exactly where none is held".into()),
+    };
+    certificate::proof(asm, &joined.patches, &a.rigid, &still, About::RigidMotions)?;
+    certificate::proof(asm, &joined.patches, &a.translation_proof, &still, About::Translations)
+        .map_err(|why| format!("translations: {why}"))
+}
+
+fn plan(joined: &Joined, a: &PlanAnswer) -> Result<(), String> {
+    sealed(&a.checksum, &PlanAnswer { checksum: String::new(), ..a.clone() })?;
+    same("verb", a.verb.as_str(), "plan")?;
+    let asm = &joined.assembly;
+    let parts = parts(joined, &a.of)?;
+    match plan::check_of(asm, &parts, &a.plan) {
+        plan::Checked::Valid { .. } => {}
+        plan::Checked::Invalid { step, parts, why, .. } => {
+            return Err(format!("step {}: {}: {why}", step + 1, parts.join(", ")));
+        }
+        plan::Checked::Undecided { why } => return Err(format!("could not be decided: {why}")),
+    }
+    for stuck in &a.plan.stuck {
+        if let Some(lock) = &stuck.lock {
+            locked_alone(joined, &stuck.parts, lock)?;
+        }
+    }
+    let proven = a.plan.stuck.iter().any(|s| s.lock.is_some());
+    match (a.plan.outcome, a.plan.stuck.is_empty(), proven) {
+        (Outcome::Assembled, true, _)
+        | (Outcome::NeedsFlexible, false, true)
+        | (Outcome::NotFound, false, false) => Ok(()),
+        (outcome, ..) => Err(format!("the outcome {outcome:?} does not follow from what stayed together")),
+    }
+}
+
+/// The certificate is about these parts alone: all others are still, and contacts with them do not count.
+fn locked_alone(joined: &Joined, ids: &[String], lock: &answer::Certificate) -> Result<(), String> {
+    let asm = &joined.assembly;
+    let inside = parts(joined, ids)?;
+    let patches: Vec<_> =
+        joined.patches.iter().filter(|p| inside.contains(&p.a) && inside.contains(&p.b)).cloned().collect();
+    let free: Vec<PartIx> =
+        inside.iter().copied().filter(|&p| !lock.still.contains(&asm.part(p).id)).collect();
+    let held = inside.iter().any(|&p| asm.held().any(|h| h == p));
+    // Without a held part one may be taken as fixed, no more; with some, just these.
+    let missing = inside.len() - free.len();
+    let own = inside.iter().filter(|&&p| asm.held().any(|h| h == p)).count();
+    if (held && missing != own) || (!held && missing > 1) {
+        return Err("a lock is claimed with more parts fixed than may be".into());
+    }
+    certificate::certificate(asm, &patches, lock, About::RigidMotions)
+}
+
+fn parts(joined: &Joined, ids: &[String]) -> Result<Vec<PartIx>, String> {
+    let asm = &joined.assembly;
+    let find =
+        |id: &String| asm.ids().find(|&p| asm.part(p).id == *id).ok_or(format!("no part is called `{id}`"));
+    ids.iter().map(find).collect()
+}
+
+fn sealed(found: &str, without: &impl Serialize) -> Result<(), String> {
+    let expected = answer::checksum(without);
+    if found == expected {
+        Ok(())
+    } else {
+        Err(format!("the answer was changed: its checksum is {expected}, not {found}"))
+    }
+}
+
+fn same<T: PartialEq + std::fmt::Debug>(what: &str, claimed: T, found: T) -> Result<(), String> {
+    if claimed == found { Ok(()) } else { Err(format!("{what}: {claimed:?} is claimed, {found:?} is found")) }
+}

@@ -5,6 +5,7 @@
 
 use super::{Draft, Kind, Strand};
 use serde::Serialize;
+use std::fmt;
 
 /// Which way the diagonal of a twill climbs, with x (warps) to the right and y (wefts) up.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -32,6 +33,20 @@ pub enum Family {
         face: Kind,
     },
     Other,
+}
+
+impl fmt::Display for Family {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Family::Plain => write!(f, "plain"),
+            Family::Twill { hand, runs } => {
+                let runs: Vec<String> = runs.iter().map(u32::to_string).collect();
+                write!(f, "twill {hand:?} {}", runs.join("/"))
+            }
+            Family::Satin { step, face } => write!(f, "satin, step {step}, {} face", face.word()),
+            Family::Other => write!(f, "other"),
+        }
+    }
 }
 
 /// The family of the draft.
@@ -113,6 +128,16 @@ pub enum Float {
     Crossings(u32),
     /// Some strand never changes to the other side.
     Endless,
+}
+
+impl fmt::Display for Float {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Float::Absent => write!(f, "none"),
+            Float::Crossings(n) => write!(f, "{n}"),
+            Float::Endless => write!(f, "endless"),
+        }
+    }
 }
 
 /// The longest floats of either kind of strand, on either side.

@@ -26,7 +26,7 @@ pub struct Entry {
 }
 
 /// Sections whose lines must be in order, in lower case; the others (texts, colours, private ones) are not looked at.
-const STRICT: [&str; 9] =
+pub const STRICT: [&str; 9] =
     ["wif", "contents", "weaving", "warp", "weft", "threading", "treadling", "tieup", "liftplan"];
 
 /// A line that is not as it should be.

@@ -4,16 +4,20 @@
 //! that falls apart is a draft like any other (see [`hangs_together`]).
 
 mod draft;
+mod draw;
 mod drawn;
 mod family;
 mod hanging;
 mod ini;
+mod svg;
 mod wif;
 
 pub use draft::Draft;
+pub use draw::terminal;
 pub use drawn::{DrawnFault, MAX_DRAFT, parse_drawn};
 pub use family::{Family, Float, Floats, Hand, family, floats, wave};
 pub use hanging::{Hanging, hangs_together};
+pub use svg::svg;
 pub use wif::{parse_wif, to_wif};
 
 use crate::fault::{Fault, Faults};

@@ -1,11 +1,11 @@
 //! Takes a Weaving Information File (version 1.1); gives the draft it weaves, or all that is wrong with it.
 //!
 //! Row j = 0 of the draft is the first pick, column i = 0 the first warp thread; where the shed raises the warp, the
-//! weft passes under. A liftplan goes before treadling and tie-up, as the format says. Threads and picks without an
+//! weft passes under. A liftplan goes before treadling and tie-up, as the format says, unless [CONTENTS] denies it. Threads and picks without an
 //! entry, and the entry 0, stand for none. Not promised: colours, spacing, thickness and private sections are not
 //! read; where one thread runs through several shafts, any of them moves it.
 
-use super::ini::{Entry, Ini, Section};
+use super::ini::{Entry, Ini, STRICT, Section};
 use super::{Draft, MAX_DRAFT, Origin, Weave};
 use crate::fault::{Fault, Faults, Place};
 use std::path::Path;
@@ -52,9 +52,9 @@ impl Reader {
         let picks = self.count(&ini, "WEFT", "Threads", MAX_THREADS);
         let shafts = self.count(&ini, "WEAVING", "Shafts", MAX_SHAFTS);
         let threading = self.table(&ini, "THREADING", threads, shafts);
-        let lifts = match ini.section("liftplan") {
-            Some(_) => self.table(&ini, "LIFTPLAN", picks, shafts),
-            None => self.treadled(&ini, picks, shafts),
+        let lifts = match has_liftplan(&ini) {
+            true => self.table(&ini, "LIFTPLAN", picks, shafts),
+            false => self.treadled(&ini, picks, shafts),
         };
         let (threading, lifts) = (threading?, lifts?);
         if !self.faults.is_empty() {
@@ -78,13 +78,12 @@ impl Reader {
         });
     }
 
-    /// Sections that [CONTENTS] promises must stand in the file.
+    /// Sections that [CONTENTS] promises must stand in the file, as far as the draft needs them.
     fn contents(&mut self, ini: &Ini) {
         let Some(contents) = ini.section("contents") else { return };
-        for entry in &contents.entries {
-            let promised = yes_no(&entry.value) == Some(true);
-            if promised && ini.section(&entry.key).is_none() {
-                let what = format!("[CONTENTS] promises a section [{}], but there is none", entry.key);
+        for entry in contents.entries.iter().filter(|entry| STRICT.contains(&entry.key.as_str())) {
+            if yes_no(&entry.value) == Some(true) && ini.section(&entry.key).is_none() {
+                let what = format!("[CONTENTS] promises [{}], but there is none", entry.key.to_uppercase());
                 self.fault(Some(entry.line), what, "the file may be cut off");
             }
         }
@@ -113,7 +112,7 @@ impl Reader {
             Ok(n) if (1..=most).contains(&n) => Some(n),
             _ => {
                 let what = format!("{key} in [{section}] is {:?}, but it must be 1 to {most}", entry.value);
-                self.fault(Some(entry.line), what, "larger cloths are refused: export one repeat");
+                self.fault(Some(entry.line), what, "a whole number; of a larger cloth export one repeat");
                 None
             }
         }
@@ -192,6 +191,13 @@ impl Reader {
         self.fault(None, what, &hint);
         None
     }
+}
+
+/// Whether a liftplan stands in the file and [CONTENTS] does not deny it.
+fn has_liftplan(ini: &Ini) -> bool {
+    let said = ini.section("contents").and_then(|contents| contents.entry("liftplan"));
+    let denied = said.and_then(|entry| yes_no(&entry.value)) == Some(false);
+    ini.section("liftplan").is_some() && !denied
 }
 
 fn tied(pressed: &Numbers, tieup: &[Numbers]) -> Numbers {

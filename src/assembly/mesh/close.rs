@@ -11,7 +11,7 @@ use parry3d_f64::partitioning::{Bvh, BvhBuildStrategy};
 use std::collections::BTreeMap;
 
 /// So many faults of one kind are listed one by one; the rest is counted.
-const LISTED: usize = 20;
+pub(super) const LISTED: usize = 20;
 
 /// Corner rings of faces, and which faces hang together.
 #[derive(Clone, Debug, Default)]
@@ -23,6 +23,8 @@ pub(super) struct Closed {
     pub voids: usize,
     pub t_junctions: usize,
     pub dropped: usize,
+    /// Pairs of a face and its reverse, taken out.
+    pub walls: usize,
     /// Edges where more than two faces meet and still pair up: the solid touches itself along them.
     pub touching_edges: usize,
 }
@@ -42,6 +44,11 @@ pub(super) fn close(soup: &Soup, width: f64) -> Result<Closed, Vec<Found>> {
         return Err(vec![found(Place::File, "no face with an area", "the file must hold one closed mesh")]);
     }
     let t_junctions = split_edges(&mut rings, &soup.vertices, width);
+    let walls = cancel(&mut rings);
+    if rings.is_empty() {
+        let what = "walls without thickness only: each face has its reverse";
+        return Err(vec![found(Place::File, what, "give the walls a thickness")]);
+    }
     let mut faults = open_edges(&rings, &soup.vertices);
     faults.extend(doubled_faces(&rings, &soup.vertices));
     if !faults.is_empty() {
@@ -49,7 +56,7 @@ pub(super) fn close(soup: &Soup, width: f64) -> Result<Closed, Vec<Found>> {
     }
     let touching_edges = directed(&rings).iter().filter(|&(&(a, b), &n)| a < b && n > 1).count();
     let (bodies, voids) = super::shells::outward(&rings, &soup.vertices, width)?;
-    Ok(Closed { rings, bodies, voids, t_junctions, dropped, touching_edges })
+    Ok(Closed { rings, bodies, voids, t_junctions, dropped, walls, touching_edges })
 }
 
 fn without_repeats(face: &[u32]) -> Vec<u32> {
@@ -192,29 +199,40 @@ fn open_edges(rings: &[Vec<u32>], points: &[DVec3]) -> Vec<Found> {
     faults
 }
 
-/// Faces over the same corners: the same face twice, or two sides of a wall without thickness.
-fn doubled_faces(rings: &[Vec<u32>], points: &[DVec3]) -> Vec<Found> {
-    let mut seen: BTreeMap<Vec<u32>, usize> = BTreeMap::new();
-    let mut faults = Vec::new();
+/// A ring that starts with its least corner.
+fn canonical(ring: impl Iterator<Item = u32> + Clone) -> Vec<u32> {
+    let mut ring: Vec<u32> = ring.collect();
+    let least = (0..ring.len()).min_by_key(|&k| ring[k]).unwrap_or(0);
+    ring.rotate_left(least);
+    ring
+}
+
+/// Takes out pairs of a face and its reverse: walls inside, or without thickness, bound nothing. Returns how many pairs.
+fn cancel(rings: &mut Vec<Vec<u32>>) -> usize {
+    let mut at: BTreeMap<Vec<u32>, Vec<usize>> = BTreeMap::new();
+    let mut gone = vec![false; rings.len()];
     for (k, ring) in rings.iter().enumerate() {
-        let mut key = ring.clone();
-        key.sort_unstable();
-        let Some(&first) = seen.get(&key) else {
-            seen.insert(key, k);
-            continue;
-        };
-        let same = area_vector(ring, points).dot(area_vector(&rings[first], points)) > 0.0;
-        let place = Place::Edge(points[ring[0] as usize], points[ring[1] as usize]);
-        faults.push(if same {
-            found(place, "the face beside it is there twice", "remove one of the two")
-        } else {
-            found(
-                place,
-                "wall without thickness: a face and its reverse",
-                "remove both, or give the wall a thickness",
-            )
-        });
+        let reverse = at.get_mut(&canonical(ring.iter().rev().copied())).and_then(Vec::pop);
+        match reverse {
+            Some(j) => (gone[j], gone[k]) = (true, true),
+            None => at.entry(canonical(ring.iter().copied())).or_default().push(k),
+        }
     }
-    faults.truncate(LISTED);
-    faults
+    let mut gone = gone.into_iter();
+    let before = rings.len();
+    rings.retain(|_| !gone.next().unwrap_or(false));
+    (before - rings.len()) / 2
+}
+
+/// Faces that are there twice the same way.
+fn doubled_faces(rings: &[Vec<u32>], points: &[DVec3]) -> Vec<Found> {
+    let mut count: BTreeMap<Vec<u32>, usize> = BTreeMap::new();
+    rings.iter().for_each(|r| *count.entry(canonical(r.iter().copied())).or_default() += 1);
+    let twice = count.into_iter().filter(|&(_, n)| n > 1).take(LISTED);
+    twice
+        .map(|(ring, n)| {
+            let place = Place::Edge(points[ring[0] as usize], points[ring[1] as usize]);
+            found(place, format!("the face beside it is there {n} times"), "keep one of them")
+        })
+        .collect()
 }

@@ -1,9 +1,13 @@
 //! Takes mesh files (STL, OBJ, 3MF), gives one closed solid for each.
 //!
 //! Promised: closed, outward, no face twice, vertices welded by identity, facets planar and convex; a file that is not
-//! so is refused with all its faults. Not promised: that the surface keeps clear of itself.
+//! so is refused with all its faults. Not promised: that the surface touches itself
+//! nowhere, nor that several shells keep clear of each other.
 
+mod assemble;
+mod cells;
 mod close;
+mod crossing;
 mod faults;
 mod flat;
 mod obj;
@@ -13,10 +17,14 @@ mod soup;
 mod stl;
 mod threemf;
 
+pub use assemble::{MeshAssembly, assemble};
+pub use cells::NoCells;
+pub(crate) use cells::polytope::{halves, height};
 pub use faults::{MeshFault, MeshFaults, Place};
 pub(crate) use shells::solid_angle;
 
 use crate::solid::{Facet, Solid};
+use close::LISTED;
 use faults::{Found, found};
 use soup::Soup;
 use std::path::Path;
@@ -101,10 +109,23 @@ fn solid(soup: &Soup, reading: Reading) -> Result<Mesh, Vec<Found>> {
         return Err(faults);
     }
     let normals = flat::normals(&facets, &soup.vertices, width, reading.tolerance);
+    let crossed = crossing::crossings(&facets, &normals, &soup.vertices, width);
+    if !crossed.is_empty() {
+        return Err(crossed.into_iter().take(LISTED).map(|((a, b), _)| crossed_at(a, b, soup)).collect());
+    }
     let facets = facets.into_iter().zip(normals).map(|(corners, normal)| Facet { corners, normal }).collect();
-    let solid = used_only(Solid { vertices: soup.vertices.clone(), facets, cells: vec![] });
-    let remarks = remarks(&closed);
+    let mut solid = used_only(Solid { vertices: soup.vertices.clone(), facets, cells: vec![] });
+    let mut remarks = remarks(&closed);
+    match cells::cells(&solid, width) {
+        Ok(cells) => solid.cells = cells,
+        Err(why) => remarks.push(format!("no convex cells ({why}): plans are not run for this part")),
+    }
     Ok(Mesh { solid, bodies: closed.bodies, voids: closed.voids, resolution: soup.resolution, remarks })
+}
+
+fn crossed_at(a: u32, b: u32, soup: &Soup) -> Found {
+    let place = Place::Edge(soup.vertices[a as usize], soup.vertices[b as usize]);
+    found(place, "runs through another face of the same shell", "the surface must not cross itself")
 }
 
 /// The solid without vertices that no facet uses.
@@ -128,6 +149,8 @@ fn remarks(c: &close::Closed) -> Vec<String> {
     let tees =
         (c.t_junctions > 0).then(|| format!("{} vertices stood on the edge of a neighbor", c.t_junctions));
     let dropped = (c.dropped > 0).then(|| format!("{} faces without area were passed over", c.dropped));
+    let walls =
+        (c.walls > 0).then(|| format!("{} walls inside, a face and its reverse, were taken out", c.walls));
     let touch = (c.touching_edges > 0).then(|| format!("touches itself along {} edges", c.touching_edges));
-    [several, hollow, tees, dropped, touch].into_iter().flatten().collect()
+    [several, hollow, tees, dropped, walls, touch].into_iter().flatten().collect()
 }

@@ -74,7 +74,7 @@ fn shells<'a>(rings: &'a [Vec<u32>], points: &[DVec3]) -> Vec<Shell<'a>> {
 }
 
 /// For each ring the least-numbered ring that it hangs together with over edges.
-fn components(rings: &[Vec<u32>]) -> Vec<usize> {
+pub(super) fn components(rings: &[Vec<u32>]) -> Vec<usize> {
     let mut root: Vec<usize> = (0..rings.len()).collect();
     let mut owner: BTreeMap<(u32, u32), usize> = BTreeMap::new();
     for (k, ring) in rings.iter().enumerate() {

@@ -20,6 +20,9 @@ const DEEPEST: usize = 32;
 /// Objects are used no more often in one package: components that double at each level grow without bound.
 const MOST_USES: usize = 100_000;
 
+/// More triangles than this, over all uses, are refused.
+const MOST_TRIANGLES: usize = 20_000_000;
+
 const HINT: &str = "export the package again";
 
 /// An object is known by the model part that it stands in and its number there.
@@ -185,8 +188,8 @@ impl Unpacking<'_> {
             |what: &str| found(Place::File, format!("object {} of {} {what}", one.key.1, one.key.0), HINT);
         let object = self.objects.get(&one.key).ok_or_else(|| fault("is not there"))?;
         self.uses += 1;
-        if depth > DEEPEST || self.uses > MOST_USES {
-            return Err(fault("is used in itself, too deep or too often"));
+        if depth > DEEPEST || self.uses > MOST_USES || self.soup.faces.len() > MOST_TRIANGLES {
+            return Err(fault("is used in itself, too deep, or too often for memory"));
         }
         if object.support {
             return Ok(());

@@ -71,7 +71,8 @@ pub struct Overlap {
     pub b: PartIx,
     pub a_id: String,
     pub b_id: String,
-    /// How far a point of one was found below the surface of the other: a lower bound, in model units.
+    /// How far a point of one was found below the surface of the other, or the diameter of a ball found in both: a lower
+    /// bound, in model units.
     pub depth: f64,
     pub at: DVec3,
 }

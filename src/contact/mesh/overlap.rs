@@ -1,16 +1,20 @@
 //! Takes two shapes, tells how deep one reaches into the other.
 //!
-//! Sound: a depth that is given is really reached, at the point that is given. Not complete in theory: looked at are every
-//! stretch of every edge between the faces that it pierces, the middle of every facet, and the space under faces that
-//! lie flush the same way; an overlap that shows at none of them is not seen.
+//! Sound: a depth that is given is really reached, at the point that is given. Complete for shapes whose convex cells are
+//! known, up to overlaps so thin that they hold no ball as wide as the tolerance. Without cells it looks at every stretch of
+//! every edge between the faces that it pierces, the middle of every facet, and the space under faces that lie flush the
+//! same way; an overlap that shows at none of these is not seen.
 
 use super::flush::{Facing, regions};
 use super::shape::{Shape, around};
 use crate::assembly::mesh::solid_angle;
+use crate::assembly::mesh::{halves, height};
+use crate::solid::Cell;
 use glam::DVec3;
 use parry3d_f64::bounding_volume::BoundingVolume;
 
-/// A point inside both shapes and its distance from the surface that was reached into, in model units.
+/// How deep, in model units: either `at` is on one surface and that far below the other, or a ball of that diameter
+/// around it is in both shapes.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Depth {
     pub at: DVec3,
@@ -24,10 +28,36 @@ pub(super) fn overlap(a: &Shape, b: &Shape, tolerance: f64) -> Option<Depth> {
         deepest(points.collect::<Vec<_>>(), b, tolerance)
     };
     let under = deepest(under_flush(a, b, tolerance), b, tolerance);
-    [reaching(a, b), reaching(b, a), under]
-        .into_iter()
-        .flatten()
-        .reduce(|x, y| if y.depth > x.depth { y } else { x })
+    let found = [reaching(a, b), reaching(b, a), under].into_iter().flatten();
+    found.reduce(|x, y| if y.depth > x.depth { y } else { x }).or_else(|| by_cells(a, b, tolerance))
+}
+
+/// The roundest space that two cells share.
+fn by_cells(a: &Shape, b: &Shape, tolerance: f64) -> Option<Depth> {
+    let pairs = a.cells.iter().flat_map(|x| b.cells.iter().map(move |y| (x, y)));
+    let near = pairs
+        .filter(|((_, p), (_, q))| p.tightened(tolerance / 2.0).intersects(&q.tightened(tolerance / 2.0)));
+    let shared = near.filter_map(|((x, _), (y, _))| shared(x, y, tolerance / 2.0));
+    let measured = shared.map(|p| Depth { at: p, depth: 2.0 * distance(a, p).min(distance(b, p)) });
+    measured.filter(|d| d.depth > tolerance).reduce(|x, y| if y.depth > x.depth { y } else { x })
+}
+
+/// A point of both cells farther than `inset` from the planes of either.
+fn shared(x: &Cell, y: &Cell, inset: f64) -> Option<DVec3> {
+    let inner = |&(n, d): &(DVec3, f64)| (n, d - inset);
+    let misses = |c: &Cell, other: &Cell| {
+        c.planes.iter().map(inner).any(|p| other.vertices.iter().all(|&v| height(p, v) >= 0.0))
+    };
+    if misses(x, y) || misses(y, x) {
+        return None;
+    }
+    // Thinner remainders are round-off of the cuts.
+    let thin = inset / 1000.0;
+    let planes = x.planes.iter().chain(&y.planes).map(inner);
+    let rest = planes.into_iter().try_fold(x.clone(), |c, p| {
+        halves(&c, p, thin).0.filter(|c| c.vertices.iter().any(|&v| height(p, v) < -thin))
+    })?;
+    Some(rest.vertices.iter().sum::<DVec3>() / rest.vertices.len() as f64)
 }
 
 fn deepest(points: Vec<DVec3>, b: &Shape, tolerance: f64) -> Option<Depth> {

@@ -4,6 +4,7 @@
 
 use super::local::{Features, Form, Local};
 use crate::assembly::{Assembly, PartIx};
+use crate::solid::Cell;
 use glam::DVec3;
 use parry3d_f64::bounding_volume::{Aabb, BoundingVolume};
 use parry3d_f64::partitioning::{Bvh, BvhBuildStrategy};
@@ -23,6 +24,8 @@ pub(super) struct Shape {
     pub faces: Vec<Face>,
     pub bounds: Aabb,
     pub features: Features,
+    /// Convex cells about the common origin with their boxes; empty where none are known.
+    pub cells: Vec<(Cell, Aabb)>,
     tree: Bvh,
 }
 
@@ -45,7 +48,8 @@ impl Shape {
         let tree = Bvh::from_leaves(BvhBuildStrategy::Binned, &boxes);
         let bounds = around(points.iter().copied());
         let features = Features::of(&points, &faces);
-        Shape { part, points, faces, bounds, features, tree }
+        let cells = assembly.cells(part).into_iter().map(|c| about(c, origin)).collect();
+        Shape { part, points, faces, bounds, features, cells, tree }
     }
 
     pub fn at(&self, i: u32) -> DVec3 {
@@ -81,6 +85,18 @@ impl Shape {
     pub fn edges(&self) -> impl Iterator<Item = (DVec3, DVec3)> + '_ {
         self.features.edges.iter().map(|e| (self.at(e.ends[0]), self.at(e.ends[1])))
     }
+}
+
+/// The cell about the common origin, and its box.
+fn about(mut cell: Cell, origin: DVec3) -> (Cell, Aabb) {
+    cell.vertices.iter_mut().for_each(|p| *p -= origin);
+    for (plane, facet) in cell.planes.iter_mut().zip(&cell.facets) {
+        // From its corners: the offset of a far plane has lost the digits that count.
+        let sum: f64 = facet.iter().map(|&i| plane.0.dot(cell.vertices[i as usize])).sum();
+        plane.1 = sum / facet.len() as f64;
+    }
+    let bounds = around(cell.vertices.iter().copied());
+    (cell, bounds)
 }
 
 /// The smallest box around points; an inverted one around none.

@@ -95,10 +95,34 @@ fn add(all: &mut Touches, place: &Place, faces: &[Flush], tolerance: f64) {
         Err(why) => {
             let listed = |q: &Passed| covered(&|p| on_stretch(&q.corners, p, reach));
             if !all.passed.iter().any(listed) {
-                all.passed.push(Passed { corners: place.corners.clone(), why });
+                list(&mut all.passed, Passed { corners: place.corners.clone(), why }, reach);
             }
         }
     }
+}
+
+/// Adds to the list; a stretch that goes on where another one ends makes that one longer.
+fn list(passed: &mut Vec<Passed>, new: Passed, reach: f64) {
+    let longer =
+        passed.iter().position(|q| q.why == new.why && continued(&q.corners, &new.corners, reach).is_some());
+    match longer.and_then(|k| continued(&passed[k].corners, &new.corners, reach).map(|c| (k, c))) {
+        Some((k, corners)) => {
+            passed.remove(k);
+            list(passed, Passed { corners, why: new.why }, reach);
+        }
+        None => passed.push(new),
+    }
+}
+
+/// The stretch over both, if they share an end and lie on one line within `reach`.
+fn continued(p: &[DVec3], q: &[DVec3], reach: f64) -> Option<Vec<DVec3>> {
+    let ([a, b], [c, d]) = (p, q) else { return None };
+    let shared = |x: &DVec3, y: &DVec3| x.distance(*y) <= reach;
+    let (start, middle, end) = [(a, b, c, d), (a, b, d, c), (b, a, c, d), (b, a, d, c)]
+        .into_iter()
+        .find_map(|(s, m, n, e)| shared(m, n).then_some((*s, *m, *e)))?;
+    let straight = segment_distance(start, end, middle) <= reach && (middle - start).dot(end - middle) > 0.0;
+    straight.then(|| vec![start, end])
 }
 
 /// Whether a row with this normal is there at p already. A face's normal is the mean of two that differ by its tilt.

@@ -25,6 +25,9 @@ pub fn arrow(from: DVec3, to: DVec3, radius: f64) -> Option<Solid> {
 /// An arrow bent about the axis through `centre`: it turns by `angle` radians (by its sign, right-handed about `axis`),
 /// at most once around, on a circle of radius `bow`. `None` where axis, bow, angle or shaft have no size.
 pub fn turning_arrow(centre: DVec3, axis: DVec3, bow: f64, angle: f64, radius: f64) -> Option<Solid> {
+    if !angle.is_finite() {
+        return None;
+    }
     let axis = axis.try_normalize()? * angle.signum();
     let (u, v) = axis.any_orthonormal_pair();
     let angle = angle.abs().min(TAU * 0.9);
@@ -43,6 +46,26 @@ pub fn turning_arrow(centre: DVec3, axis: DVec3, bow: f64, angle: f64, radius: f
     let tip = at(shaft) + way(shaft + head / 2.0) * radius * HEAD_LENGTH;
     Some(lathe(&middles, &ways, radius, (tip, way(shaft + head / 2.0))))
 }
+
+/// The signs of a velocity `translation + rotation x (p - at)`: a straight arrow and a turning one, together as long as
+/// `length` for the faster part of the motion; a part of it too small to see gets no sign.
+pub fn motion(at: DVec3, translation: DVec3, rotation: DVec3, length: f64) -> Vec<Solid> {
+    // A turn is as fast as it moves points half a length away.
+    let (go, turn) = (translation.length(), rotation.length() * length / 2.0);
+    let most = go.max(turn);
+    let share = |speed: f64| if speed > most * LEAST_SHOWN { speed / most } else { 0.0 };
+    let radius = length * SHAFT;
+    let straight = arrow(at, at + translation.normalize_or_zero() * length * share(go), radius);
+    let bent = turning_arrow(at, rotation, length * BOW, share(turn) * LARGEST_TURN, radius);
+    straight.into_iter().chain(bent).collect()
+}
+
+/// Share of the faster of two speeds below which the slower is not shown.
+const LEAST_SHOWN: f64 = 0.05;
+/// Radii of shaft and bow in lengths of the sign, and the turn, in radians, that the fastest rotation is drawn with.
+const SHAFT: f64 = 0.03;
+const BOW: f64 = 0.35;
+const LARGEST_TURN: f64 = 4.5;
 
 /// A tube through `middles`, square to `ways`, with a flat tail and a conical head that ends in `tip`.
 fn lathe(middles: &[DVec3], ways: &[DVec3], radius: f64, (tip, head): (DVec3, DVec3)) -> Solid {

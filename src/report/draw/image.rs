@@ -77,6 +77,19 @@ impl Image {
     }
 }
 
+/// Pictures in a row, from left to right, on transparent ground where one is less high.
+pub fn beside(pictures: &[Image]) -> Result<Image, BadSize> {
+    let sizes = || pictures.iter().map(|p| p.size);
+    let width = sizes().map(|s| s.width).fold(0, u32::saturating_add);
+    let size = Size::new(width, sizes().map(|s| s.height).max().unwrap_or(0))?;
+    let row = |p: &Image, y: usize| {
+        let bytes = p.size.width as usize * 4;
+        p.rgba.get(y * bytes..(y + 1) * bytes).map_or_else(|| vec![0; bytes], <[u8]>::to_vec)
+    };
+    let rgba = (0..size.height as usize).flat_map(|y| pictures.iter().flat_map(move |p| row(p, y))).collect();
+    Ok(Image { size, rgba })
+}
+
 /// Writes the picture whole or not at all.
 pub fn write_png(image: &Image, path: &Path) -> Result<(), WriteError> {
     let bytes = image.png().map_err(|source| WriteError { path: path.to_path_buf(), source })?;

@@ -5,7 +5,7 @@
 
 use super::camera::{Frame, View};
 use super::layer::spans;
-use super::scene::{Opacity, Scene};
+use super::scene::{Opacity, Scene, Shadow};
 use glam::DVec3;
 use rayon::prelude::*;
 
@@ -28,7 +28,8 @@ const KEY_LIGHT: [f64; 3] = [0.52, 0.49, 0.44];
 struct Lamp {
     toward: DVec3,
     colour: [f64; 3],
-    map: DepthMap,
+    /// None where nothing casts a shadow.
+    map: Option<DepthMap>,
 }
 
 pub(super) struct Light {
@@ -52,7 +53,7 @@ impl Light {
         for lamp in &self.lamps {
             let facing = n.dot(lamp.toward);
             if facing > 0.0 {
-                let seen = facing * lamp.map.open(p, n);
+                let seen = facing * lamp.map.as_ref().map_or(1.0, |m| m.open(p, n));
                 (0..3).for_each(|k| sum[k] += lamp.colour[k] * seen);
             }
         }
@@ -61,7 +62,7 @@ impl Light {
 }
 
 fn solid_triangles(scene: &Scene) -> Vec<[DVec3; 3]> {
-    let solid = scene.items.iter().filter(|i| i.opacity == Opacity::Solid);
+    let solid = scene.items.iter().filter(|i| i.opacity == Opacity::Solid && i.shadow == Shadow::Cast);
     solid
         .flat_map(|item| {
             let placed: Vec<DVec3> = item.points().collect();
@@ -111,10 +112,12 @@ struct DepthMap {
 }
 
 impl DepthMap {
-    fn of(triangles: &[[DVec3; 3]], toward: DVec3) -> DepthMap {
+    fn of(triangles: &[[DVec3; 3]], toward: DVec3) -> Option<DepthMap> {
         let (u, v) = toward.any_orthonormal_pair();
         let flat = |p: &DVec3| DVec3::new(u.dot(*p), v.dot(*p), toward.dot(*p));
-        let placed: Vec<[DVec3; 3]> = triangles.iter().map(|t| [0, 1, 2].map(|k| flat(&t[k]))).collect();
+        // Of a closed solid only the faces turned to the lamp can be outermost.
+        let facing = |[a, b, c]: &&[DVec3; 3]| (*b - *a).cross(*c - *a).dot(toward) > 0.0;
+        let placed: Vec<[DVec3; 3]> = triangles.iter().filter(facing).map(|t| t.map(|p| flat(&p))).collect();
         let corners = || placed.iter().flatten();
         let lo = corners().fold(DVec3::INFINITY, |m, p| m.min(*p));
         let hi = corners().fold(DVec3::NEG_INFINITY, |m, p| m.max(*p));
@@ -123,7 +126,7 @@ impl DepthMap {
         let low = [lo.x - 2.0 * texel, lo.y - 2.0 * texel];
         let mut map = DepthMap { u, v, toward, low, texel, height: vec![f32::NEG_INFINITY; MAP * MAP] };
         placed.iter().for_each(|t| map.raise(t));
-        map
+        (!placed.is_empty()).then_some(map)
     }
 
     fn raise(&mut self, [a, b, c]: &[DVec3; 3]) {

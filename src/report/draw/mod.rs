@@ -8,6 +8,7 @@
 //! ```
 
 pub mod camera;
+pub mod figures;
 pub mod glyph;
 pub mod image;
 mod ink;
@@ -19,8 +20,8 @@ pub mod palette;
 pub mod scene;
 
 pub use camera::{Projection, View};
-pub use image::{Image, Size, write_png};
+pub use image::{Image, Size, beside, write_png};
 pub use mesh::Mesh;
 pub use paint::render;
 pub use palette::Colour;
-pub use scene::{Background, Item, Opacity, Scene};
+pub use scene::{Background, Item, Opacity, Scene, Shadow};

@@ -35,15 +35,22 @@ pub const INK: [u8; 3] = [26, 26, 32];
 pub const FORCE: [u8; 3] = [190, 20, 84];
 pub const MOTION: [u8; 3] = [0, 120, 90];
 
-/// The colour of a part: warm for `weft-J`, cool for `warp-I` (the ids of woven assemblies), else by its place.
+/// The colour of a part: warm for `weft-J`, cool for `warp-I` (the ids of woven assemblies), else by its place. Pieces
+/// of one strand (`weft-J/N`) are two shades apart.
 pub fn of_part(id: &str, place: usize) -> Colour {
-    let strand = |prefix: &str| id.strip_prefix(prefix)?.split('/').next()?.parse::<usize>().ok();
-    let pick = |table: &[[u8; 3]], k: usize| Colour::srgb(table[k % table.len()]);
-    match (strand("weft-"), strand("warp-")) {
-        (Some(j), _) => pick(&WARM, j),
-        (_, Some(i)) => pick(&COOL, i),
-        _ => pick(&OTHER, place),
+    let pick = |table: &[[u8; 3]], k: i64| Colour::srgb(table[k.rem_euclid(table.len() as i64) as usize]);
+    match (strand(id, "weft-"), strand(id, "warp-")) {
+        (Some((j, n)), _) => pick(&WARM, j.wrapping_add(n.wrapping_mul(2))),
+        (_, Some((i, n))) => pick(&COOL, i.wrapping_add(n.wrapping_mul(2))),
+        _ => pick(&OTHER, place as i64),
     }
+}
+
+/// Strand and piece of an id that starts with `prefix`.
+fn strand(id: &str, prefix: &str) -> Option<(i64, i64)> {
+    let rest = id.strip_prefix(prefix)?;
+    let (strand, piece) = rest.split_once('/').unwrap_or((rest, "0"));
+    Some((strand.parse().ok()?, piece.parse().ok()?))
 }
 
 /// IEC 61966-2-1, encoded to linear.

@@ -6,6 +6,7 @@ use super::camera::View;
 use super::mesh::{CreaseAngle, Mesh};
 use super::palette::{self, Colour};
 use crate::assembly::{Assembly, PartIx};
+use crate::solid::Solid;
 use glam::{DAffine3, DVec3};
 use std::sync::Arc;
 
@@ -18,6 +19,13 @@ pub enum Opacity {
     },
     /// Not drawn, yet the camera leaves room for it: the same view with and without a part.
     Hidden,
+}
+
+/// Whether an item takes light away from others. Glyphs do not: they are signs, not things.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Shadow {
+    Cast,
+    None,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -34,11 +42,24 @@ pub struct Item {
     pub offset: DVec3,
     pub colour: Colour,
     pub opacity: Opacity,
+    pub shadow: Shadow,
 }
 
 impl Item {
     pub fn new(mesh: Arc<Mesh>, colour: Colour) -> Item {
-        Item { mesh, pose: DAffine3::IDENTITY, offset: DVec3::ZERO, colour, opacity: Opacity::Solid }
+        Item {
+            mesh,
+            pose: DAffine3::IDENTITY,
+            offset: DVec3::ZERO,
+            colour,
+            opacity: Opacity::Solid,
+            shadow: Shadow::Cast,
+        }
+    }
+
+    /// An arrow or another sign: solid, without a shadow.
+    pub fn sign(solid: &Solid, colour: Colour) -> Item {
+        Item { shadow: Shadow::None, ..Item::new(Arc::new(Mesh::of(solid, CreaseAngle::default())), colour) }
     }
 
     pub(super) fn place(&self, p: DVec3) -> DVec3 {
@@ -91,7 +112,7 @@ impl Scene {
 }
 
 /// Centre of the bounding box.
-fn middle(item: &Item) -> DVec3 {
+pub(super) fn middle(item: &Item) -> DVec3 {
     let bounds = item.points().fold(None, |b: Option<(DVec3, DVec3)>, p| match b {
         None => Some((p, p)),
         Some((lo, hi)) => Some((lo.min(p), hi.max(p))),

@@ -1,0 +1,52 @@
+//! Takes a mesh spec; gives its assembly, one solid for each file, or the faults of all files at once.
+//!
+//! Not promised: that parts touch or keep apart; `contact` finds out.
+
+use super::mesh::{MeshFault, Reading, read_mesh};
+use super::{Assembly, Part};
+use crate::fault::{Fault, Faults};
+use crate::solid::Solid;
+use crate::spec::{MeshPartSpec, MeshSpec, Spec};
+use rayon::prelude::*;
+use std::collections::BTreeMap;
+use std::path::Path;
+
+/// The assembly, and remarks about files that were taken in good faith.
+pub fn assembly(spec: &Spec, meshes: &MeshSpec) -> Result<(Assembly, Vec<String>), Faults> {
+    let reading =
+        Reading { mm_per_unit: meshes.mm_per_unit, tolerance: meshes.tolerance_mm / meshes.mm_per_unit };
+    let mut first: BTreeMap<&Path, usize> = BTreeMap::new();
+    for part in &meshes.parts {
+        let next = first.len();
+        first.entry(&part.mesh).or_insert(next);
+    }
+    let mut files: Vec<(&Path, usize)> = first.iter().map(|(p, k)| (*p, *k)).collect();
+    files.sort_by_key(|f| f.1);
+    let read: Vec<_> = files.par_iter().map(|(path, _)| read_mesh(path, reading)).collect();
+    let (mut solids, mut faults, mut remarks) = (Vec::<Solid>::new(), Vec::new(), Vec::new());
+    for ((path, _), mesh) in files.iter().zip(read) {
+        match mesh {
+            Ok(mesh) => {
+                remarks.extend(mesh.remarks.iter().map(|r| format!("{}: {r}", path.display())));
+                solids.push(mesh.solid);
+            }
+            Err(bad) => faults.extend(bad.0.into_iter().map(|f| fault(spec, meshes, f))),
+        }
+    }
+    Faults(faults).or(())?;
+    let part = |p: &MeshPartSpec| Part {
+        id: p.id.clone(),
+        solid: first[p.mesh.as_path()],
+        pose: p.at,
+        mobility: p.held,
+    };
+    let parts = meshes.parts.iter().map(part).collect();
+    Ok((Assembly { name: spec.name.clone(), solids, parts, mm_per_unit: meshes.mm_per_unit }, remarks))
+}
+
+/// A mesh's fault, with the line of the spec that named the file.
+fn fault(spec: &Spec, meshes: &MeshSpec, fault: MeshFault) -> Fault {
+    let k = meshes.parts.iter().position(|p| p.mesh == fault.file).unwrap_or(0);
+    let what = format!("{}: {}{}", fault.file.display(), fault.place, fault.what);
+    spec.fault(&format!("part[{k}].mesh"), what, fault.hint)
+}

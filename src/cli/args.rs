@@ -1,0 +1,157 @@
+//! Takes the command line; gives what was asked for, typed.
+//!
+//! Not promised: that files exist or hold what they should; the verbs find out.
+
+use clap::{Args as ClapArgs, Parser, Subcommand, ValueEnum};
+use std::path::PathBuf;
+
+/// Decides whether an assembly of solid parts locks, proves it, plans how it goes together, makes its parts.
+///
+/// Without a verb: the embedded example (the paper's plain 2 x 2), everything, into out/.
+/// Exit code 0: good news for the verb; 1: answered otherwise; 2: bad input, or a fault of ours.
+#[derive(Parser, Debug)]
+#[command(name = "weavelock", version, max_term_width = 100)]
+pub struct Args {
+    #[command(subcommand)]
+    pub verb: Option<Verb>,
+    #[command(flatten)]
+    pub common: Common,
+}
+
+#[derive(ClapArgs, Debug, Clone)]
+pub struct Common {
+    /// Print one JSON object instead of words
+    #[arg(long, global = true)]
+    pub json: bool,
+    /// No remarks on stderr
+    #[arg(long, short, global = true)]
+    pub quiet: bool,
+    /// Threads to use (default: one for each core); answers do not depend on it
+    #[arg(long, global = true, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub threads: Option<u16>,
+}
+
+#[derive(Subcommand, Debug)]
+pub enum Verb {
+    /// Everything for a file, into a folder: `weavelock run plain.toml --out out`
+    Run {
+        file: PathBuf,
+        #[arg(long, default_value = "out")]
+        out: PathBuf,
+    },
+    /// Is it locked? By translations, by rigid motions; with a certificate: `weavelock check plain.toml`
+    Check {
+        file: PathBuf,
+        /// Part to take as fixed where none is held (the verdict does not depend on it)
+        #[arg(long, value_name = "PART")]
+        fix: Option<String>,
+    },
+    /// How does it come apart, and together? `weavelock plan twill.toml --json`
+    Plan {
+        file: PathBuf,
+        /// Only these parts; the others are not there: `--of weft-0,weft-1,warp-0`
+        #[arg(long, value_name = "PARTS", value_delimiter = ',')]
+        of: Vec<String>,
+    },
+    /// Does it need flexible parts? The fewest, which, and the bound's proof
+    Flex { file: PathBuf },
+    /// The smallest repetition of the unit tile that locks: `weavelock repeats [2,2,1]`
+    Repeats(Repeats),
+    /// Hands of the tile, of weft against warp, and of the assembly: `weavelock chirality [4,1,2]`
+    Chirality {
+        #[arg(allow_hyphen_values = true, value_name = "FILE|[a,b,c]")]
+        subject: String,
+    },
+    /// The weave itself: drawing, period, floats, family, does it hang together: `weavelock weave [7,1,3]`
+    Weave {
+        /// A spec, a WIF or drawn draft, or [a,b,c]
+        #[arg(allow_hyphen_values = true, value_name = "FILE|[a,b,c]")]
+        subject: String,
+        /// Write the drawing as SVG
+        #[arg(long, value_name = "FILE")]
+        svg: Option<PathBuf>,
+        /// Write the draft as WIF 1.1
+        #[arg(long, value_name = "FILE")]
+        wif: Option<PathBuf>,
+    },
+    /// The parts with clearance and allowance built in, checked: `weavelock fab plain.toml --out parts`
+    Fab {
+        file: PathBuf,
+        /// Process by name or file, over the spec's
+        #[arg(long)]
+        process: Option<String>,
+        #[arg(long, default_value = "parts")]
+        out: PathBuf,
+        /// Also check with OpenSCAD, PrusaSlicer and ADMesh, where installed
+        #[arg(long)]
+        check: bool,
+    },
+    /// The parts as they are, in place or one by one, in mm: `weavelock export plain.toml --as obj`
+    Export {
+        file: PathBuf,
+        #[arg(long = "as", value_enum, default_value = "stl")]
+        format: Format,
+        /// One file with all parts in place, or a file for each part
+        #[arg(long, value_enum, default_value = "parts")]
+        layout: Together,
+        #[arg(long, default_value = "export")]
+        out: PathBuf,
+    },
+    /// Re-checks a certificate or plan without the solver that made it: `weavelock verify out/check.json`
+    Verify { answer: PathBuf },
+    /// The table over all [a,b,c] up to a size
+    Atlas {
+        #[arg(long, value_name = "N", default_value_t = 5, value_parser = clap::value_parser!(u32).range(2..=64))]
+        max_n: u32,
+        #[arg(long, default_value = "atlas")]
+        out: PathBuf,
+    },
+    /// The page for a file, one self-contained HTML file
+    Report {
+        file: PathBuf,
+        #[arg(long, default_value = "report.html")]
+        out: PathBuf,
+    },
+    /// JSON Schema of the files in and of every answer
+    Schema,
+}
+
+#[derive(ClapArgs, Debug)]
+pub struct Repeats {
+    #[arg(allow_hyphen_values = true, value_name = "[a,b,c]")]
+    pub weave: String,
+    /// Largest repetition to try
+    #[arg(long, default_value_t = 6, value_parser = clap::value_parser!(u32).range(1..=64))]
+    pub most: u32,
+    /// Phases of the cuts to try; all must lock
+    #[arg(long, value_delimiter = ',', default_value = "0", allow_hyphen_values = true)]
+    pub phase: Vec<i32>,
+    /// Wefts and warps of the swatch (default: n and n)
+    #[arg(long, value_parser = clap::value_parser!(u32).range(1..=256))]
+    pub wefts: Option<u32>,
+    #[arg(long, value_parser = clap::value_parser!(u32).range(1..=256))]
+    pub warps: Option<u32>,
+    /// Profile, as in a spec's [profile]
+    #[arg(long, default_value_t = 0.6)]
+    pub rise: f64,
+    #[arg(long, default_value_t = 1.0)]
+    pub lift: f64,
+    #[arg(long, default_value_t = 1.0)]
+    pub cover: f64,
+    #[arg(long, default_value_t = 8)]
+    pub samples: u32,
+}
+
+#[derive(ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Format {
+    Stl,
+    Obj,
+}
+
+#[derive(ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Together {
+    /// A file for each part
+    Parts,
+    /// One file
+    Whole,
+}

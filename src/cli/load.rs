@@ -1,0 +1,95 @@
+//! Takes a path; gives the spec with its text, or the assembly in place.
+//!
+//! Not promised: anything beyond what `spec` and `contact` promise.
+
+use crate::contact::{self, Joined};
+use crate::fault::{Fault, Faults};
+use crate::input;
+use crate::locking::{self, Check};
+use crate::report::answer::Source;
+use crate::spec::{self, Spec, Subject, Syntax};
+use crate::weave::{Hanging, Weave, hangs_together};
+use std::path::Path;
+
+/// A spec and where it came from.
+pub struct Loaded {
+    pub spec: Spec,
+    pub source: Source,
+}
+
+/// The assembly of a spec, in place.
+pub struct Placed {
+    pub spec: Spec,
+    pub source: Source,
+    pub joined: Joined,
+}
+
+/// Reads a spec file.
+pub fn spec(file: &Path) -> Result<Loaded, Faults> {
+    let text = input::text(input::bytes(file)?, file)?;
+    let spec = spec::parse(&text, file, Syntax::of(file, &text))?;
+    Ok(Loaded { spec, source: Source { file: file.display().to_string(), text } })
+}
+
+/// The example that the program carries.
+pub fn example() -> Result<Loaded, Faults> {
+    let text = include_str!("../../fixtures/examples/plain-2x2.toml").to_string();
+    let file = Path::new("plain-2x2.toml");
+    let spec = spec::parse(&text, file, Syntax::Toml)?;
+    Ok(Loaded { spec, source: Source { file: file.display().to_string(), text } })
+}
+
+impl Loaded {
+    pub fn joined(self) -> Result<Placed, Faults> {
+        let mut joined = contact::join(&self.spec)?;
+        if let Subject::Woven(woven) = &self.spec.subject {
+            joined.remarks.extend(falls_apart(&woven.weave));
+        }
+        Ok(Placed { spec: self.spec, source: self.source, joined })
+    }
+}
+
+impl Placed {
+    pub fn check(&self) -> Check {
+        locking::check(&self.joined.assembly, &self.joined.patches, None)
+    }
+}
+
+/// A word of warning where the infinite fabric does not hang together.
+pub fn falls_apart(weave: &Weave) -> Option<String> {
+    match hangs_together(&weave.draft) {
+        Hanging::Together => None,
+        Hanging::FallsApart { lifts } => {
+            let names: Vec<String> = lifts.iter().map(ToString::to_string).collect();
+            Some(format!("this weave falls apart: {} lift off the rest (one period named)", names.join(", ")))
+        }
+    }
+}
+
+/// A weave given as `[a,b,c]`, as a spec, or as a WIF or drawn draft.
+pub fn weave(subject: &str) -> Result<Weave, Faults> {
+    let path = Path::new(subject);
+    let looks_like_abc = subject.trim_start().starts_with('[') || !path.exists() && subject.contains(',');
+    if looks_like_abc {
+        return Weave::parse_abc(subject);
+    }
+    let ending = path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase());
+    if !matches!(ending.as_deref(), Some("toml" | "json")) {
+        return Weave::read(path);
+    }
+    match spec(path)?.spec.subject {
+        Subject::Woven(woven) => Ok(woven.weave),
+        Subject::Meshes(_) => Err(no_weave(path)),
+    }
+}
+
+pub fn no_weave(path: &Path) -> Faults {
+    let fault = Fault {
+        file: path.display().to_string(),
+        place: None,
+        key: "weave".into(),
+        what: "an assembly of meshes has no weave".into(),
+        hint: "give a woven spec, a WIF file, a drawn draft or [a,b,c]".into(),
+    };
+    fault.into()
+}

@@ -1,0 +1,75 @@
+//! Takes typed arguments; runs a verb; prints its answer on stdout, remarks on stderr; gives the exit code.
+//!
+//! Not promised: any finding of its own. No panic reaches a user: what slips through is reported as a fault of ours.
+
+pub mod args;
+mod load;
+mod make;
+mod questions;
+mod run;
+mod schema;
+mod told;
+mod words;
+
+use args::{Args, Common, Verb};
+use std::io::Write;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::process::ExitCode;
+use told::{News, Told, Trouble};
+
+/// Runs the program.
+pub fn main(args: Args) -> ExitCode {
+    if let Some(n) = args.common.threads {
+        // Fails only when a pool exists already, which nothing before this made.
+        let _ = rayon::ThreadPoolBuilder::new().num_threads(usize::from(n)).build_global();
+    }
+    std::panic::set_hook(Box::new(|_| {}));
+    let done = catch_unwind(AssertUnwindSafe(|| dispatch(&args)));
+    let result = done.unwrap_or_else(|panic| Err(Trouble::ours(panic.as_ref())));
+    match result.and_then(|told| print(&told, &args.common)) {
+        Ok(News::Good) => ExitCode::SUCCESS,
+        Ok(News::Other) => ExitCode::from(1),
+        Err(trouble) => {
+            let _ = writeln!(std::io::stderr(), "{trouble}");
+            ExitCode::from(2)
+        }
+    }
+}
+
+fn dispatch(args: &Args) -> Result<Told, Trouble> {
+    match &args.verb {
+        None => run::example(&args.common),
+        Some(Verb::Run { file, out }) => run::file(file, out, &args.common),
+        Some(Verb::Check { file, fix }) => questions::check(&load::spec(file)?.joined()?, fix.as_deref()),
+        Some(Verb::Plan { file, of }) => questions::plan(&load::spec(file)?.joined()?, of),
+        Some(Verb::Flex { file }) => questions::flex(&load::spec(file)?.joined()?),
+        Some(Verb::Repeats(asked)) => questions::repeats(asked),
+        Some(Verb::Chirality { subject }) => questions::chirality(subject),
+        Some(Verb::Weave { subject, svg, wif }) => questions::weave(subject, svg.as_deref(), wif.as_deref()),
+        Some(Verb::Fab { file, process, out, check }) => {
+            make::fab(&load::spec(file)?.joined()?, process.as_deref(), out, make::Checkers::of(*check))
+        }
+        Some(Verb::Export { file, format, layout, out }) => {
+            make::export(&load::spec(file)?.joined()?, *format, *layout, out)
+        }
+        Some(Verb::Verify { answer }) => questions::verify(answer),
+        Some(Verb::Atlas { max_n, out }) => questions::atlas(*max_n, out),
+        Some(Verb::Report { file, out }) => run::report(file, out, &args.common),
+        Some(Verb::Schema) => schema::schema(),
+    }
+}
+
+/// The answer on stdout, remarks on stderr. A reader who closes the pipe early has what he wanted.
+fn print(told: &Told, common: &Common) -> Result<News, Trouble> {
+    if !common.quiet {
+        for remark in &told.remarks {
+            let _ = writeln!(std::io::stderr(), "note: {remark}");
+        }
+    }
+    let text = if common.json { format!("{}\n", told.json) } else { told.text() };
+    let mut out = std::io::stdout().lock();
+    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
+        Err(e) if e.kind() != std::io::ErrorKind::BrokenPipe => Err(Trouble::Word(format!("stdout: {e}"))),
+        _ => Ok(told.news),
+    }
+}

@@ -1,0 +1,220 @@
+//! Takes an assembly or a weave; asks one question of the analysis and tells the answer.
+//!
+//! Not promised: anything beyond what the stage that answers promises.
+
+use super::args::Repeats;
+use super::load::{self, Placed};
+use super::told::{News, Told, Trouble};
+use super::words;
+use crate::assembly::PartIx;
+use crate::contact::Joined;
+use crate::fault::Fault;
+use crate::flex as flexible;
+use crate::input;
+use crate::locking::{self, Check, Verdict};
+use crate::repeats::{self, Search};
+use crate::report::answer::{self, Certificate, FlexAnswer, PlanAnswer, RepeatsAnswer, Sealed};
+use crate::report::file::write_whole;
+use crate::report::words as chapters;
+use crate::sequence::{self, Outcome, Plan, Searched};
+use crate::spec::{self, Bounds, ProfileSpec, Shape};
+use crate::verify;
+use crate::weave::{self, Weave};
+use std::path::Path;
+
+pub fn check(placed: &Placed, fix: Option<&str>) -> Result<Told, Trouble> {
+    let joined = &placed.joined;
+    let fix = fix.map(|id| part(joined, id)).transpose()?;
+    let check = locking::check(&joined.assembly, &joined.patches, fix);
+    Ok(told_check(placed, &check))
+}
+
+pub fn told_check(placed: &Placed, check: &Check) -> Told {
+    let answer = answer::check(&placed.joined, check, placed.source.clone());
+    let news = News::of(matches!(check.rigid, Verdict::Locked(_)));
+    let chapter = chapters::verdict(&placed.joined.assembly, check);
+    Told {
+        remarks: answer.remarks.clone(),
+        ..Told::new(news, &answer, &answer.name, "Does it lock?", chapter)
+    }
+}
+
+fn part(joined: &Joined, id: &str) -> Result<PartIx, Trouble> {
+    let asm = &joined.assembly;
+    let all = || asm.parts.iter().map(|p| p.id.as_str()).take(12).collect::<Vec<_>>().join(", ");
+    asm.ids().find(|&p| asm.part(p).id == id).ok_or_else(|| {
+        argument(format!("no part is called `{id}`"), format!("the parts are {}", all())).into()
+    })
+}
+
+/// What is wrong with an argument.
+fn argument(what: String, hint: String) -> Fault {
+    Fault { file: String::new(), place: None, key: String::new(), what, hint }
+}
+
+/// The plan, each stuck set with the proof of its lock where it is locked.
+pub fn planned(placed: &Placed, of: &[PartIx]) -> PlanAnswer {
+    let joined = &placed.joined;
+    let (asm, patches) = (&joined.assembly, &joined.patches);
+    let lock = |set: &[PartIx]| locked(joined, set);
+    match sequence::plan_of(asm, of, patches, lock) {
+        Ok(plan) => answer::plan(joined, plan, of, placed.source.clone()),
+        Err(why) => {
+            // Nothing was searched: an honest "not found", with the reason among the remarks.
+            let none = Plan {
+                outcome: Outcome::NotFound,
+                order: sequence::Order::Disassembly,
+                steps: Vec::new(),
+                stuck: Vec::new(),
+                searched: Searched::default(),
+                touch: 0.0,
+            };
+            let mut with_reason = Joined { remarks: joined.remarks.clone(), ..shallow(joined) };
+            with_reason.remarks.push(format!("no plan was searched: {why}"));
+            answer::plan(&with_reason, none, of, placed.source.clone())
+        }
+    }
+}
+
+/// The names and parts of an assembly, without its contacts.
+fn shallow(joined: &Joined) -> Joined {
+    let origin = crate::contact::Origin::Meshes;
+    Joined { assembly: joined.assembly.clone(), patches: Vec::new(), origin, remarks: Vec::new() }
+}
+
+fn locked(joined: &Joined, set: &[PartIx]) -> Option<Certificate> {
+    let (asm, patches) = (&joined.assembly, &joined.patches);
+    let Verdict::Locked(stress) = locking::check_some(asm, patches, set) else { return None };
+    let held: Vec<PartIx> = asm.held().filter(|p| set.contains(p)).collect();
+    let still = if held.is_empty() { set[..1].to_vec() } else { held };
+    Some(answer::certificate(asm, &still, &stress))
+}
+
+pub fn plan(placed: &Placed, of: &[String]) -> Result<Told, Trouble> {
+    let joined = &placed.joined;
+    let mut parts = of.iter().map(|id| part(joined, id.trim())).collect::<Result<Vec<_>, _>>()?;
+    if parts.is_empty() {
+        parts = joined.assembly.ids().collect();
+    }
+    parts.sort_unstable();
+    parts.dedup();
+    Ok(told_plan(placed, &planned(placed, &parts)))
+}
+
+pub fn told_plan(placed: &Placed, answer: &PlanAnswer) -> Told {
+    let news = News::of(answer.plan.outcome == Outcome::Assembled);
+    let chapter = chapters::plan(&placed.joined.assembly, &answer.plan);
+    Told {
+        remarks: answer.remarks.clone(),
+        ..Told::new(news, answer, &answer.name, "How it goes together", chapter)
+    }
+}
+
+pub fn flexed(placed: &Placed) -> Result<FlexAnswer, Trouble> {
+    let found = flexible::flex(&placed.joined.assembly, &placed.joined.patches);
+    let found = found.map_err(|why| Trouble::Word(format!("error: not searched: {why}\n  hint: flexible parts are found by plans, and plans need parts made of convex cells")))?;
+    Ok(answer::flex(&placed.joined, &found, placed.source.clone()))
+}
+
+pub fn flex(placed: &Placed) -> Result<Told, Trouble> {
+    Ok(told_flex(&flexed(placed)?))
+}
+
+pub fn told_flex(answer: &FlexAnswer) -> Told {
+    let news = News::of(answer.minimum.is_some());
+    let chapter = words::flex(answer);
+    Told {
+        remarks: answer.remarks.clone(),
+        ..Told::new(news, answer, &answer.name, "Flexible parts", chapter)
+    }
+}
+
+pub fn repeats(asked: &Repeats) -> Result<Told, Trouble> {
+    let weave = load::weave(&asked.weave)?;
+    let profile = profile(asked)?;
+    let search = Search {
+        wefts: asked.wefts.unwrap_or(weave.tile.0),
+        warps: asked.warps.unwrap_or(weave.tile.0),
+        phases: asked.phase.clone(),
+        most: asked.most,
+    };
+    Ok(told_repeats(&repeated(&weave, &asked.weave, &profile, &search)?))
+}
+
+pub fn repeated(
+    weave: &Weave,
+    name: &str,
+    profile: &ProfileSpec,
+    search: &Search,
+) -> Result<RepeatsAnswer, Trouble> {
+    let found = repeats::repeats(weave, profile, search)?;
+    Ok(answer::repeats(name, &found, load::falls_apart(weave).into_iter().collect()))
+}
+
+pub fn told_repeats(answer: &RepeatsAnswer) -> Told {
+    let news = News::of(answer.minimal_repeat.is_some());
+    let chapter = words::repeats(answer);
+    Told { remarks: answer.remarks.clone(), ..Told::new(news, answer, &answer.weave, "Repetition", chapter) }
+}
+
+/// The profile of the flags, held to the same bounds as a spec's.
+fn profile(asked: &Repeats) -> Result<ProfileSpec, Trouble> {
+    let Repeats { rise, lift, cover, samples, .. } = *asked;
+    let text = format!(
+        "[weave]\nabc = [1, 1, 1]\n[profile]\nrise = {rise:?}\nlift = {lift:?}\ncover = {cover:?}\nsamples = {samples}\n[swatch]\nwefts = 2\nwarps = 2\ncut = \"window\"\n[size]\npitch = \"1 mm\"\n"
+    );
+    let spec = spec::parse(&text, Path::new("(flags)"), spec::Syntax::Toml)?;
+    match spec.subject {
+        spec::Subject::Woven(woven) => Ok(woven.profile),
+        spec::Subject::Meshes(_) => {
+            Ok(ProfileSpec { shape: Shape::Rise(rise), lift, cover, samples, bounds: Bounds::Sandwich })
+        }
+    }
+}
+
+pub fn weave(subject: &str, svg: Option<&Path>, wif: Option<&Path>) -> Result<Told, Trouble> {
+    let weave = load::weave(subject)?;
+    if let Some(path) = svg {
+        write_whole(path, weave::svg(&weave.draft).as_bytes())?;
+    }
+    if let Some(path) = wif {
+        write_whole(path, weave::to_wif(&weave.draft, subject).as_bytes())?;
+    }
+    Ok(told_weave(&weave, subject))
+}
+
+/// Columns that a draft may fill: those of the terminal summary less its indent.
+const FIGURE_WIDTH: usize = 96;
+
+pub fn told_weave(weave: &Weave, name: &str) -> Told {
+    let answer = answer::weave(weave);
+    let chapter = words::weave(&answer, weave::terminal(&weave.draft, FIGURE_WIDTH));
+    Told::new(News::of(answer.hangs_together), &answer, name, "The weave", chapter)
+}
+
+pub fn verify(file: &Path) -> Result<Told, Trouble> {
+    let text = input::text(input::answer_bytes(file)?, file)?;
+    let sealed: Sealed = serde_json::from_str(&text).map_err(|e| {
+        let hint = "give the JSON that `weavelock check --json` or `plan --json` printed".to_string();
+        Fault {
+            file: file.display().to_string(),
+            place: None,
+            key: String::new(),
+            what: format!("this is no answer that can be verified: {e}"),
+            hint,
+        }
+    })?;
+    let verified = verify::answer(&sealed)?;
+    let chapter = words::verified(&verified);
+    Ok(Told::new(News::of(verified.valid), &verified, &file.display().to_string(), "Verify", chapter))
+}
+
+pub fn chirality(_s: &str) -> Result<Told, Trouble> {
+    Err(Trouble::Word("error: not built yet".into()))
+}
+pub fn told_chirality(_p: &Placed) -> Result<Told, Trouble> {
+    Err(Trouble::Word("error: not built yet".into()))
+}
+pub fn atlas(_n: u32, _o: &Path) -> Result<Told, Trouble> {
+    Err(Trouble::Word("error: not built yet".into()))
+}

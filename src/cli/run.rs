@@ -1,0 +1,300 @@
+//! Takes a spec; asks every question, writes the answers, parts, pictures and the page into a folder, tells the summary.
+//!
+//! Not promised: that a question which failed stops the others; it is told as not run, with the reason.
+
+use super::args::Common;
+use super::load::{self, Loaded, Placed};
+use super::make::{self, Checkers};
+use super::questions;
+use super::told::{News, Told, Trouble};
+use super::words;
+use crate::assembly::PartIx;
+use crate::repeats::Search;
+use crate::report::answer;
+use crate::report::content::{Answer, Chapter, Format, Picture};
+use crate::report::draw::{Size, figures};
+use crate::report::file::write_whole;
+use crate::report::page::{PageInput, page};
+use crate::spec::{Cut, Layout, Subject};
+use crate::weave::{Origin, Weave};
+use serde::Serialize;
+use std::path::{Path, PathBuf};
+
+pub fn example(common: &Common) -> Result<Told, Trouble> {
+    everything(load::example()?, Path::new("out"), common)
+}
+
+pub fn file(file: &Path, out: &Path, common: &Common) -> Result<Told, Trouble> {
+    everything(load::spec(file)?, out, common)
+}
+
+/// The page alone, without making parts.
+pub fn report(file: &Path, out: &Path, common: &Common) -> Result<Told, Trouble> {
+    let placed = load::spec(file)?.joined()?;
+    let asked = ask(&placed, common)?;
+    write_whole(
+        out,
+        page(&input(&placed, &asked, Answer::not_run("`weavelock fab` makes the parts"))).as_bytes(),
+    )?;
+    let headline = format!("The page is {}.", out.display());
+    let chapter = Chapter { headline, ..Chapter::default() };
+    let files = Files { verb: "report", files: vec![out.display().to_string()] };
+    Ok(Told::new(News::Good, &files, &placed.spec.name, "Page", chapter))
+}
+
+#[derive(Serialize)]
+struct Files {
+    verb: &'static str,
+    files: Vec<String>,
+}
+
+/// The answers of a run, each told or the reason why not.
+struct Asked {
+    weave: Option<Told>,
+    check: Told,
+    plan: Told,
+    flex: Result<Told, String>,
+    repeats: Result<Told, String>,
+    chirality: Result<Told, String>,
+    pictures: Vec<Picture>,
+    remarks: Vec<String>,
+}
+
+/// More parts than this are not searched for flexible ones in a run: `flex` plans again and again, which grows with
+/// the cube of the parts. The verb `flex` has no such limit.
+const MOST_PARTS_FOR_FLEX: usize = 24;
+
+/// Largest repetition that a run tries.
+const MOST_REPEATS: u32 = 4;
+
+fn ask(placed: &Placed, common: &Common) -> Result<Asked, Trouble> {
+    let progress = |what: &str| {
+        if !common.quiet {
+            eprintln!("{what} ...");
+        }
+    };
+    let asm = &placed.joined.assembly;
+    progress("is it locked");
+    let check = placed.check();
+    let pictures = pictures(placed, &check)?;
+    let check = questions::told_check(placed, &check);
+    progress("how does it go together");
+    let all: Vec<PartIx> = asm.ids().collect();
+    let plan = questions::told_plan(placed, &questions::planned(placed, &all));
+    progress("does it need a flexible part");
+    let flex = if asm.parts.len() <= MOST_PARTS_FOR_FLEX {
+        questions::flexed(placed).map(|a| questions::told_flex(&a)).map_err(|t| t.to_string())
+    } else {
+        Err(format!("not searched for more than {MOST_PARTS_FOR_FLEX} parts in a run; `weavelock flex` does"))
+    };
+    let (weave, repeats, chirality) = woven(placed, &progress)?;
+    let remarks = check.remarks.clone();
+    Ok(Asked { weave, check, plan, flex, repeats, chirality, pictures, remarks })
+}
+
+type Woven = (Option<Told>, Result<Told, String>, Result<Told, String>);
+
+fn woven(placed: &Placed, progress: &impl Fn(&str)) -> Result<Woven, Trouble> {
+    let Subject::Woven(woven) = &placed.spec.subject else {
+        let why = "an assembly of meshes has no weave".to_string();
+        return Ok((None, Err(why.clone()), Err(why)));
+    };
+    progress("what does the weave say");
+    let weave = questions::told_weave(&woven.weave, &name(&woven.weave));
+    let phase = match woven.layout {
+        Layout::Swatch { cut: Cut::Tiles, phase, .. } => phase,
+        _ => 0,
+    };
+    let n = woven.weave.tile;
+    let search = Search { wefts: n.0, warps: n.0, phases: vec![phase], most: MOST_REPEATS };
+    let repeats = questions::repeated(&woven.weave, &name(&woven.weave), &woven.profile, &search);
+    let repeats = repeats.map(|a| questions::told_repeats(&a)).map_err(|t| t.to_string());
+    let chirality = questions::told_chirality(placed).map_err(|t| t.to_string());
+    Ok((Some(weave), repeats, chirality))
+}
+
+pub fn name(weave: &Weave) -> String {
+    match &weave.origin {
+        Origin::Abc { a, b, c } => format!("[{a},{b},{c}]"),
+        Origin::Drawn => "the drawn draft".into(),
+        Origin::Wif(path) => path.display().to_string(),
+    }
+}
+
+/// Pixels of a picture on the page: wide enough for a column on a sharp screen.
+const PICTURE: (u32, u32) = (1200, 900);
+
+fn pictures(placed: &Placed, check: &crate::locking::Check) -> Result<Vec<Picture>, Trouble> {
+    use crate::locking::Verdict;
+    let asm = &placed.joined.assembly;
+    let mut all = vec![figures::together(asm), figures::exploded(asm)];
+    match &check.rigid {
+        Verdict::Locked(stress) => all.push(figures::forces(asm, stress)),
+        Verdict::Free(motion) => all.push(figures::moving(asm, motion)),
+        Verdict::Undecided(_) => {}
+    }
+    let drawn = |f: &figures::Figure| {
+        let size = Size::new(PICTURE.0, PICTURE.1).map_err(|e| Trouble::Word(format!("error: {e}")))?;
+        f.picture(size).map_err(|e| Trouble::Word(format!("error: a picture: {e}")))
+    };
+    all.iter().map(drawn).collect()
+}
+
+fn everything(loaded: Loaded, out: &Path, common: &Common) -> Result<Told, Trouble> {
+    writable(out)?;
+    let placed = loaded.joined()?;
+    let asked = ask(&placed, common)?;
+    if !common.quiet {
+        eprintln!("making the parts ...");
+    }
+    let folder = out.join("parts");
+    let made = make::made(&placed, None, &folder, Checkers::None)?;
+    let fab = make::told_fab(&made, &folder);
+    let mut files = vec![folder.display().to_string()];
+    let mut keep = |name: &str, bytes: &[u8]| -> Result<(), Trouble> {
+        let path = out.join(name);
+        write_whole(&path, bytes)?;
+        files.push(path.display().to_string());
+        Ok(())
+    };
+    for (verb, told) in asked.all().into_iter().chain([("fab", &fab)]) {
+        keep(&format!("{verb}.json"), format!("{}\n", told.json).as_bytes())?;
+    }
+    for (k, picture) in asked.pictures.iter().enumerate() {
+        if let Format::Png(bytes) = &picture.format {
+            keep(&format!("{}.png", ["together", "exploded", "witness"][k.min(2)]), bytes)?;
+        }
+    }
+    let parts = Answer::Given(make::fab_chapter(&made, &folder));
+    keep("report.html", page(&input(&placed, &asked, parts)).as_bytes())?;
+    Ok(summary(&placed, asked, fab, files, out))
+}
+
+/// Finds out before the work whether the folder can be written to.
+fn writable(out: &Path) -> Result<(), Trouble> {
+    let cannot = |e: std::io::Error| {
+        Trouble::Word(format!(
+            "error: cannot write to the folder {}: {e}\n  hint: name one that you may write to with --out",
+            out.display()
+        ))
+    };
+    std::fs::create_dir_all(out).map_err(cannot)?;
+    let probe = out.join(format!(".weavelock-{}", std::process::id()));
+    std::fs::write(&probe, b"").and_then(|()| std::fs::remove_file(&probe)).map_err(cannot)
+}
+
+impl Asked {
+    fn all(&self) -> Vec<(&'static str, &Told)> {
+        let mut all = vec![("check", &self.check), ("plan", &self.plan)];
+        let more = [("flex", &self.flex), ("repeats", &self.repeats), ("chirality", &self.chirality)];
+        all.extend(self.weave.iter().map(|t| ("weave", t)));
+        all.extend(more.into_iter().filter_map(|(verb, told)| Some((verb, told.as_ref().ok()?))));
+        all
+    }
+}
+
+fn first_chapter(told: &Told) -> Answer<Chapter> {
+    told.chapters.first().map_or(Answer::not_run("nothing was told"), |c| c.1.clone())
+}
+
+fn chapter(told: &Result<Told, String>) -> Answer<Chapter> {
+    told.as_ref().map_or_else(|why| Answer::not_run(why.clone()), first_chapter)
+}
+
+/// What is not built; said wherever a whole run is told.
+const LIMITS: [&str; 4] = [
+    "Molds, castings and their sheets are not built yet; parts with clearance and allowance are.",
+    "Plans are straight moves of parts and groups; turns and moves in several stretches are not searched.",
+    "Locked is first order at zero clearance; at what clearance a lock opens is not computed yet.",
+    "The tiles are those of the sampled sites; a certificate is not yet held against the curved bisectors.",
+];
+
+fn input(placed: &Placed, asked: &Asked, parts: Answer<Chapter>) -> PageInput {
+    let none = || Answer::not_run("an assembly of meshes has no weave");
+    PageInput {
+        title: placed.spec.name.clone(),
+        lead: lead(placed),
+        pictures: asked.pictures.clone(),
+        draft: asked.weave.as_ref().map_or_else(none, |t| with_drawing(placed, first_chapter(t))),
+        verdict: first_chapter(&asked.check),
+        plan: first_chapter(&asked.plan),
+        flexible: chapter(&asked.flex),
+        repeats: chapter(&asked.repeats),
+        chirality: chapter(&asked.chirality),
+        ledger: Answer::not_run("the scale ledger stands in fab.json"),
+        findings: Answer::not_run("findings stand with the parts"),
+        parts,
+        limits: LIMITS.map(String::from).to_vec(),
+    }
+}
+
+/// The draft's drawing beside its words.
+fn with_drawing(placed: &Placed, chapter: Answer<Chapter>) -> Answer<Chapter> {
+    let (Answer::Given(mut chapter), Subject::Woven(woven)) = (chapter, &placed.spec.subject) else {
+        return Answer::not_run("no weave");
+    };
+    let svg = crate::weave::svg(&woven.weave.draft);
+    let alt = format!("The draft of {}.", name(&woven.weave));
+    // The drawing scales; these only keep its place while the page loads.
+    chapter.pictures =
+        vec![Picture { format: Format::Svg(svg), width: 640, height: 400, alt, caption: String::new() }];
+    Answer::Given(chapter)
+}
+
+fn lead(placed: &Placed) -> String {
+    let asm = &placed.joined.assembly;
+    let what = match &placed.spec.subject {
+        Subject::Woven(woven) => format!("woven of {}", name(&woven.weave)),
+        Subject::Meshes(_) => "read from meshes".into(),
+    };
+    format!(
+        "{} parts {what}, {} contact patches, {} mm to a unit.",
+        asm.parts.len(),
+        placed.joined.patches.len(),
+        asm.mm_per_unit
+    )
+}
+
+#[derive(Serialize)]
+struct RunAnswer<'a> {
+    verb: &'static str,
+    name: &'a str,
+    verdict: answer::Word,
+    files: Vec<String>,
+}
+
+fn summary(placed: &Placed, asked: Asked, fab: Told, files: Vec<String>, out: &Path) -> Told {
+    let verdict = match asked.check.news {
+        News::Good => answer::Word::Locked,
+        News::Other => words::verdict_word(&asked.check.json),
+    };
+    let news = News::of(asked.check.news == News::Good && fab.news == News::Good);
+    let answer = RunAnswer { verb: "run", name: &placed.spec.name, verdict, files };
+    let chapters = vec![
+        ("Does it lock?".to_string(), first_chapter(&asked.check)),
+        ("How it goes together".into(), first_chapter(&asked.plan)),
+        ("Flexible parts".into(), chapter(&asked.flex)),
+        ("Repetition".into(), chapter(&asked.repeats)),
+        ("Hands".into(), chapter(&asked.chirality)),
+        ("Parts as made".into(), first_chapter(&fab)),
+    ];
+    let page: PathBuf = out.join("report.html");
+    let closing = vec![
+        format!(
+            "Read on: {}; answers as JSON beside it. Check a proof: weavelock verify {}",
+            page.display(),
+            out.join("check.json").display()
+        ),
+        format!("Not built yet: {}", LIMITS.join(" ")),
+    ];
+    let json = serde_json::to_string(&answer).unwrap_or_default();
+    Told {
+        news,
+        json,
+        title: placed.spec.name.clone(),
+        lead: lead(placed),
+        chapters,
+        closing,
+        remarks: asked.remarks,
+    }
+}

@@ -1,0 +1,28 @@
+//! Takes nothing; gives the JSON Schema of the files in and of every answer.
+//!
+//! Not promised: that a file which fits the schema is free of faults; bounds that depend on other keys are not in it.
+
+use super::told::{News, Told, Trouble};
+use crate::report::answer::{CheckAnswer, FlexAnswer, PlanAnswer, RepeatsAnswer, WeaveAnswer};
+use crate::report::content::{Chapter, Tone};
+use crate::spec::shape::SpecFile;
+use crate::verify::Verified;
+use schemars::{Schema, schema_for};
+use std::collections::BTreeMap;
+
+pub fn schema() -> Result<Told, Trouble> {
+    let all: BTreeMap<&str, Schema> = BTreeMap::from([
+        ("spec", schema_for!(SpecFile)),
+        ("check", schema_for!(CheckAnswer)),
+        ("plan", schema_for!(PlanAnswer)),
+        ("flex", schema_for!(FlexAnswer)),
+        ("repeats", schema_for!(RepeatsAnswer)),
+        ("weave", schema_for!(WeaveAnswer)),
+        ("verify", schema_for!(Verified)),
+    ]);
+    let pretty = serde_json::to_string_pretty(&all).unwrap_or_default();
+    let figure = pretty.lines().map(str::to_string).collect();
+    let headline = "One schema for the files in (spec), one for each answer.".to_string();
+    let chapter = Chapter { tone: Tone::Good, headline, figure, ..Chapter::default() };
+    Ok(Told::new(News::Good, &all, "JSON Schema", "Schemas", chapter))
+}

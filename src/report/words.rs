@@ -1,0 +1,204 @@
+//! Takes verdicts with their witnesses, gives the chapter that says them in words and numbers.
+//!
+//! Not promised: a word more than the verdict carries. First order and zero clearance are said wherever they matter.
+
+use super::content::{Chapter, Column, Table, Tone};
+use crate::assembly::{Assembly, PartIx};
+use crate::locking::{Check, Freedom, Motion, Stress, Twist, Verdict};
+use crate::sequence::{Outcome, Plan, Straight};
+use glam::DVec3;
+
+/// Does it lock, and how do we know?
+pub fn verdict(assembly: &Assembly, check: &Check) -> Chapter {
+    let mut chapter = match &check.rigid {
+        Verdict::Locked(stress) => locked(assembly, check, stress),
+        Verdict::Free(motion) => free(assembly, motion),
+        Verdict::Undecided(gap) => Chapter {
+            tone: Tone::Undecided,
+            headline: "Undecided: the numbers carry neither a lock nor a motion.".into(),
+            facts: vec![fact("why", &gap.why), fact("gap", scientific(gap.size))],
+            ..Chapter::default()
+        },
+    };
+    chapter.facts.push(fact("translations alone", check.translation.word()));
+    chapter.facts.push(fact("kept still", still(assembly, check)));
+    let about = format!("{} parts, {} contact rows", assembly.parts.len(), thousands(check.rows));
+    chapter.facts.push(fact("asked of", about));
+    chapter
+}
+
+fn locked(assembly: &Assembly, check: &Check, stress: &Stress) -> Chapter {
+    let kept = check.held.len() + usize::from(check.fixed.is_some());
+    let unknowns = Freedom::Rigid.unknowns() * assembly.parts.len().saturating_sub(kept);
+    let sizes = || stress.forces.iter().map(|f| f.size);
+    let (least, most) = (sizes().fold(f64::INFINITY, f64::min), sizes().fold(0.0, f64::max));
+    let forces = match stress.forces.len() {
+        0 => "none needed: nothing is free to move".into(),
+        n => format!("{} contact forces, all pushing, from {least:.3} to {most:.3}", thousands(n)),
+    };
+    Chapter {
+        tone: Tone::Good,
+        headline: "Locked: no part can start to move, alone or together with others.".into(),
+        words: vec![
+            "Proof: the contact forces below push at every contact they name and cancel on every part, and these \
+             contacts have full rank. A motion would have to open one of them, which the balance forbids, or slide \
+             along all of them, which the rank forbids."
+                .into(),
+            "This holds to first order and at zero clearance: parts made with clearance have play.".into(),
+        ],
+        facts: vec![
+            fact("self-stress", forces),
+            fact("rank", format!("{} of {unknowns}", stress.rank)),
+            fact("left unbalanced", format!("{} at most (round-off)", scientific(stress.residual))),
+            fact("rank's distance from falling", format!("{} (smallest pivot over largest)", scientific(stress.smallest_pivot))),
+        ],
+        ..Chapter::default()
+    }
+}
+
+fn free(assembly: &Assembly, motion: &Motion) -> Chapter {
+    let moving = movers(motion);
+    let further = motion.twists.len() - moving.len();
+    let how = if motion.opening > 0.0 {
+        "At least one contact opens on the way; none is pressed."
+    } else {
+        "Every contact only slides; none opens, none is pressed."
+    };
+    let axes = ["shift x", "shift y", "shift z", "turn x", "turn y", "turn z"];
+    let rows = moving.iter().map(|(p, t)| {
+        let numbers = [t.translation, t.rotation].map(|v| v.to_array().map(decimal));
+        std::iter::once(id(assembly, *p)).chain(numbers.concat()).collect()
+    });
+    let mut words =
+        vec![how.into(), "To first order: whether it comes apart is the plan's answer, not this one.".into()];
+    if further > 0 {
+        words.push(format!("The witness names {further} more parts, which move by too little to print."));
+    }
+    Chapter {
+        tone: Tone::Bad,
+        headline: format!("Free: {} can start to move.", parts(moving.len())),
+        words,
+        facts: vec![
+            fact("fastest opening", format!("{:.4}", motion.opening)),
+            fact("worst contact", format!("{} (below 0 by round-off only)", scientific(motion.worst))),
+        ],
+        tables: vec![Table {
+            caption: "Velocity of each part that moves: shift of its reference point, turn about it".into(),
+            head: std::iter::once(Column::words("part")).chain(axes.map(Column::numbers)).collect(),
+            rows: rows.collect(),
+        }],
+        ..Chapter::default()
+    }
+}
+
+/// How does it go together? Steps are told in the order of assembly.
+pub fn plan<C>(assembly: &Assembly, plan: &Plan<C>) -> Chapter {
+    let stuck = plan.stuck.iter().map(|s| s.parts.join(", ")).collect::<Vec<_>>().join("; and ");
+    let (tone, headline, words) = match plan.outcome {
+        Outcome::Assembled => {
+            let moves =
+                if plan.steps.len() == 1 { "one move".into() } else { format!("{} moves", plan.steps.len()) };
+            (Tone::Good, format!("It goes together: {moves}, straight and without force."), vec![])
+        }
+        Outcome::NeedsFlexible => (
+            Tone::Bad,
+            "Not from rigid parts: something must bend.".into(),
+            vec![format!(
+                "Locked by themselves: {stuck}. No motion can start there, so no order of rigid moves takes these parts \
+                 apart or puts them together at zero clearance."
+            )],
+        ),
+        Outcome::NotFound => {
+            let excluded = plan.stuck.iter().all(|s| s.straight_moves == Straight::None);
+            let why = if excluded {
+                "No group of them can leave by one straight move; turns, and moves that stop half way, were not tried."
+            } else {
+                "The search gave up before every straight move was excluded."
+            };
+            let found = vec![format!("These stayed together: {stuck}. {why}")];
+            (Tone::Undecided, "No plan found, and none excluded.".into(), found)
+        }
+    };
+    let searched =
+        format!("{} sets, {} directions", thousands(plan.searched.sets), thousands(plan.searched.directions));
+    let touch = format!("overlap up to {} mm", scientific(plan.touch * assembly.mm_per_unit));
+    let tables = if plan.steps.is_empty() { vec![] } else { vec![steps(assembly, plan)] };
+    Chapter {
+        tone,
+        headline,
+        words,
+        facts: vec![fact("searched", searched), fact("counts as touching", touch)],
+        tables,
+        ..Chapter::default()
+    }
+}
+
+fn steps<C>(assembly: &Assembly, plan: &Plan<C>) -> Table {
+    let rows = plan.steps.iter().rev().zip(1..).map(|(s, k)| {
+        let toward = s.direction.map(|c| decimal(-c));
+        let lengths = [s.distance_mm, s.clear * assembly.mm_per_unit].map(|l| format!("{l:.2}"));
+        let ends = [vec![k.to_string(), s.parts.join(", ")], vec![s.stays.join(", ")]];
+        [&ends[0], toward.as_slice(), &lengths, &ends[1]].concat()
+    });
+    let numbers = ["along x", "y", "z", "length, mm", "kept, mm"].map(Column::numbers);
+    let head = [Column::numbers("step"), Column::words("parts")].into_iter().chain(numbers);
+    Table {
+        caption: "Moves in the order of assembly; kept: the least distance on the way, 0 where parts slide"
+            .into(),
+        head: head.chain([Column::words("onto")]).collect(),
+        rows: rows.collect(),
+    }
+}
+
+fn still(assembly: &Assembly, check: &Check) -> String {
+    match check.fixed {
+        Some(p) => format!(
+            "{}, as the place to look from (nothing is held; the verdict is the same for any part)",
+            id(assembly, p)
+        ),
+        None => {
+            format!("{} (held)", check.held.iter().map(|&p| id(assembly, p)).collect::<Vec<_>>().join(", "))
+        }
+    }
+}
+
+fn id(assembly: &Assembly, p: PartIx) -> String {
+    assembly.part(p).id.clone()
+}
+
+fn fact(name: &str, value: impl Into<String>) -> (String, String) {
+    (name.into(), value.into())
+}
+
+fn parts(n: usize) -> String {
+    if n == 1 { "one part".into() } else { format!("{n} parts together") }
+}
+
+/// Digits after the point of a velocity, and the least one that they show.
+const PLACES: usize = 3;
+const LEAST_PRINTED: f64 = 0.5e-3;
+
+/// The twists of a motion that are not zero as printed.
+pub(in crate::report) fn movers(motion: &Motion) -> Vec<(PartIx, Twist)> {
+    let shown = |v: DVec3| v.abs().max_element() >= LEAST_PRINTED;
+    motion.twists.iter().filter(|(_, t)| shown(t.translation) || shown(t.rotation)).copied().collect()
+}
+
+fn decimal(x: f64) -> String {
+    let text = format!("{x:.PLACES$}");
+    // A minus zero would be read as a direction.
+    if x.abs() < LEAST_PRINTED { text.trim_start_matches('-').into() } else { text }
+}
+
+/// Two digits and a power of ten, as in 3.1e-13.
+pub fn scientific(x: f64) -> String {
+    format!("{x:.1e}")
+}
+
+/// A count with its thousands apart.
+pub fn thousands(n: usize) -> String {
+    let digits = n.to_string();
+    let head = (digits.len() - 1) % 3 + 1;
+    let groups = digits.as_bytes()[head..].chunks(3).map(|g| String::from_utf8_lossy(g));
+    std::iter::once(digits[..head].into()).chain(groups).collect::<Vec<_>>().join(",")
+}
