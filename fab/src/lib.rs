@@ -11,6 +11,7 @@
 pub mod bvh;
 pub mod check;
 pub mod cross;
+mod ears;
 mod external;
 pub mod files;
 mod findings;
