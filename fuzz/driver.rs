@@ -70,12 +70,16 @@ fn verdict(target: Target, input: &[u8]) -> Result<String, String> {
     }
 }
 
-/// The shapes of a verdict's lines: without digits and without what stands in quotes (places, values and the user's own
-/// words). What is new is what stands around them; only new lines count, as there is no end of new mixtures.
+/// Letters that tell one kind of line from another.
+const SHAPE: usize = 60;
+
+/// The shapes of a verdict's lines: letters only, without what stands in quotes (the user's own words). Only new lines
+/// count, as there is no end of new mixtures.
 fn shapes(words: &str) -> impl Iterator<Item = String> + '_ {
-    words
-        .lines()
-        .map(|line| line.split('"').step_by(2).flat_map(str::chars).filter(|c| !c.is_ascii_digit()).collect())
+    words.lines().map(|line| {
+        let outside = line.split(['"', '\'']).step_by(2).flat_map(str::chars);
+        outside.filter(char::is_ascii_alphabetic).take(SHAPE).collect()
+    })
 }
 
 /// SplitMix64: small, and the same everywhere.

@@ -97,6 +97,8 @@ fn sound_woven(spec: &WovenSpec) -> String {
         Shape::Rise(rise) => format!("rise {}", (0.0..=1.0).contains(rise)),
         Shape::Points(points) => {
             assert!(points.is_sorted_by_key(|p| p[0]) && points.iter().flatten().all(|x| x.is_finite()));
+            let ([x0, z0], [x1, z1]) = (points[0], points[points.len() - 1]);
+            assert!((x1 - x0 - f64::from(spec.weave.tile.0)).abs() < 1e-9 && z0 == z1, "{points:?}");
             "points".into()
         }
     };

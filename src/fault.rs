@@ -66,6 +66,20 @@ fn count(bytes: &[u8]) -> usize {
     bytes.iter().filter(|&&byte| byte & 0xc0 != 0x80).count()
 }
 
+/// Characters of a user's text that a message repeats.
+pub const QUOTED: usize = 60;
+
+/// The text, cut where it is longer than [`QUOTED`] characters.
+pub fn shortened(text: &str) -> String {
+    let head: String = text.chars().take(QUOTED).collect();
+    if head.len() < text.len() { head + "..." } else { head }
+}
+
+/// The user's text in quotes, not too much of it, and nothing in it that a terminal would obey.
+pub fn quoted(text: &str) -> String {
+    format!("{:?}", shortened(text))
+}
+
 /// One thing that is wrong with an input file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Fault {
@@ -85,7 +99,11 @@ impl fmt::Display for Fault {
             None if self.file.is_empty() => String::new(),
             None => format!("{}: ", self.file),
         };
-        let key = if self.key.is_empty() { String::new() } else { format!("`{}`: ", self.key) };
+        let key = if self.key.is_empty() {
+            String::new()
+        } else {
+            format!("`{}`: ", shortened(&self.key).escape_debug())
+        };
         write!(f, "{from}{key}{}", self.what)?;
         if self.hint.is_empty() { Ok(()) } else { write!(f, "\n  hint: {}", self.hint) }
     }

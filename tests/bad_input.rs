@@ -12,7 +12,7 @@ use weavelock::fault::{Faults, Place};
 use weavelock::spec::{
     Bounds, Cut, HeldSpec, Layout, Shape, Spec, Subject, Syntax, WovenSpec, parse, piece_ids, read,
 };
-use weavelock::weave::Weave;
+use weavelock::weave::{Weave, parse_wif};
 
 fn fixtures() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures")
@@ -221,6 +221,34 @@ fn hostile_texts_end() {
             let faults = parse(&text, Path::new("hostile"), syntax).expect_err("nothing of this is right");
             assert_sound(&faults);
         }
+    }
+    let sections = (0..many).map(|k| format!("[s{k}]\n")).collect::<String>();
+    let lines = (0..many).map(|k| format!("k{k}\n")).collect::<String>();
+    for text in [
+        format!("[WIF]\n{sections}"),
+        format!("[WIF]\n{lines}"),
+        "[WIF]\n".repeat(many),
+        "1=1\n".repeat(many),
+    ] {
+        assert_sound(&parse_wif(&text, Path::new("hostile.wif")).expect_err("no draft"));
+    }
+}
+
+/// What a file holds is quoted in parts and escaped: it cannot flood the terminal, nor command it.
+#[test]
+fn messages_do_not_obey_the_file() {
+    let escape = "\u{1b}[31m".repeat(1000);
+    let toml = format!(
+        "name = 'a'\n[\"{0}\"]\n[fab]\nprocess = \"p\"\n[fab.shrinkage]\n\"{0}\" = 1",
+        "\\u001b[31m".repeat(1000)
+    );
+    let faults = parse(&toml, Path::new("a.toml"), Syntax::Toml).expect_err("wrong");
+    let wif = format!(
+        "[WIF]\n[{escape}]\n[WARP]\n{escape}={escape}\n{escape}\nThreads={escape}\n[THREADING]\n{escape}=1"
+    );
+    let more = parse_wif(&wif, Path::new("a.wif")).expect_err("wrong");
+    for said in [faults.to_string(), more.to_string()] {
+        assert!(!said.contains('\u{1b}') && said.lines().all(|line| line.len() < 1000), "{said}");
     }
 }
 

@@ -3,16 +3,17 @@
 //! Promised: ids are unique; poses are proper rigid motions to round-off. Not promised: that the mesh files exist.
 
 use super::read::{home, plain_name};
-use super::reader::{Field, Fields, Reader, shown};
+use super::reader::{Field, Fields, Reader};
 use super::units;
 use super::{MeshPartSpec, MeshSpec};
 use crate::assembly::Mobility;
+use crate::fault::quoted;
 use glam::{DAffine3, DMat3, DVec3};
 use std::collections::BTreeMap;
 use std::ops::Bound::{Excluded, Included};
 use std::path::{Path, PathBuf};
 
-/// Taken where [contact] is absent, in mm.
+/// Taken where `[contact]` is absent, in mm.
 const DEFAULT_TOLERANCE_MM: f64 = 0.001;
 
 /// Largest tolerance and largest shift of a pose, in mm and in the file's unit: a kilometre.
@@ -46,7 +47,7 @@ fn all_parts<'t>(
     for (at, part) in read.iter().enumerate().filter_map(|(at, part)| Some((at, part.as_ref()?))) {
         let before = *first.entry(&part.id).or_insert(at);
         if before != at {
-            let what = format!("has the id {} of part[{before}]", shown(&part.id));
+            let what = format!("has the id {} of part[{before}]", quoted(&part.id));
             reader.fault(&items[at], what, "give each part its own `id`; by default it is the file's stem");
             unique = false;
         }
@@ -91,7 +92,7 @@ fn mesh<'t>(reader: &mut Reader<'t>, field: &Field<'t>) -> Option<PathBuf> {
     if end.is_some_and(|end| ["stl", "obj", "3mf"].contains(&end.as_str())) {
         return Some(path.to_path_buf());
     }
-    reader.fault(field, format!("{} is no mesh by its name", shown(&path.to_string_lossy())), hint);
+    reader.fault(field, format!("{} is no mesh by its name", quoted(&path.to_string_lossy())), hint);
     None
 }
 

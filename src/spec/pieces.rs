@@ -3,9 +3,10 @@
 //! Promised: ids are unique and every held id is one of them. Not promised: that pieces touch.
 
 use super::read::home;
-use super::reader::{Field, Reader, nearest, shown};
+use super::reader::{Field, Reader, nearest};
 use super::woven::MAX_INDEX;
 use super::{HeldSpec, PieceSpec};
+use crate::fault::quoted;
 use crate::weave::{Kind, Strand};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -103,7 +104,7 @@ pub fn held_list<'t>(reader: &mut Reader<'t>, field: &Field<'t>) -> Option<(Held
     match field.as_text() {
         Some("rim") => return Some((HeldSpec::Rim, Vec::new())),
         Some(word) => {
-            reader.fault(field, format!("{} is neither a list nor \"rim\"", shown(word)), hint);
+            reader.fault(field, format!("{} is neither a list nor \"rim\"", quoted(word)), hint);
             return None;
         }
         None => {}
@@ -113,7 +114,7 @@ pub fn held_list<'t>(reader: &mut Reader<'t>, field: &Field<'t>) -> Option<(Held
     let ids = ids.into_iter().collect::<Option<Vec<_>>>()?;
     let mut seen = BTreeSet::new();
     for (id, item) in ids.iter().zip(&items).filter(|(id, _)| !seen.insert(**id)) {
-        reader.fault(item, format!("{} stands twice", shown(id)), "name each held part once");
+        reader.fault(item, format!("{} stands twice", quoted(id)), "name each held part once");
     }
     let held = match ids.is_empty() {
         true => HeldSpec::None,
@@ -159,9 +160,9 @@ fn exist(reader: &mut Reader<'_>, parts: &[String], items: &[Field<'_>], ids: &[
     for (part, item) in parts.iter().zip(items).filter(|(part, _)| !known.contains(part.as_str())) {
         let few = &ids[..ids.len().min(GUESSED)];
         let near = nearest(part, &few.iter().map(String::as_str).collect::<Vec<_>>());
-        let first = || format!("parts are named as {}", shown(&ids[0]));
-        let hint = near.map_or_else(first, |near| format!("did you mean {}?", shown(near)));
-        reader.fault(item, format!("there is no part {}", shown(part)), hint);
+        let first = || format!("parts are named as {}", quoted(&ids[0]));
+        let hint = near.map_or_else(first, |near| format!("did you mean {}?", quoted(near)));
+        reader.fault(item, format!("there is no part {}", quoted(part)), hint);
         all = None;
     }
     all

@@ -5,7 +5,7 @@
 use super::reader::{Field, Fields, Reader};
 use super::tree::{SyntaxFault, Table};
 use super::{FabSpec, Spec, Subject, json, meshes, tree, woven};
-use crate::fault::Faults;
+use crate::fault::{Faults, quoted};
 use crate::input;
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -156,7 +156,7 @@ pub fn plain_name(reader: &mut Reader<'_>, field: &Field, name: &str) -> Option<
     } else if let Some(sign) = name.chars().find(|c| c.is_control() || matches!(c, '\\' | ':')) {
         format!("has the character {sign:?}")
     } else if name.split('/').any(leads_out) {
-        format!("is {}", super::reader::shown(name))
+        format!("is {}", quoted(name))
     } else {
         return Some(name.to_string());
     };

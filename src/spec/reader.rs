@@ -5,7 +5,7 @@
 use super::Places;
 use super::tree::{Node, SyntaxFault, Table, Value};
 use super::units::{Wrong, millimetres, percent};
-use crate::fault::{Fault, Faults, Lines, Place};
+use crate::fault::{Fault, Faults, Lines, Place, QUOTED, quoted, shortened};
 use std::collections::BTreeSet;
 use std::fmt::Display;
 use std::ops::{Bound, RangeBounds, RangeInclusive};
@@ -163,7 +163,7 @@ impl<'t> Reader<'t> {
             if fields.path.is_empty() && self.broken.first().is_some_and(|&line| line < place.line) {
                 continue;
             }
-            self.note(Some(place), &fields.path, format!("unknown key {}", shown(&key.name)), hint);
+            self.note(Some(place), &fields.path, format!("unknown key {}", quoted(&key.name)), hint);
         }
     }
 
@@ -188,7 +188,7 @@ impl<'t> Reader<'t> {
         let text = self.text(field, &hint)?;
         let found = words.iter().find(|(word, _)| *word == text).map(|(_, meaning)| *meaning);
         if found.is_none() {
-            self.fault(field, format!("{} is not known here", shown(text)), hint);
+            self.fault(field, format!("{} is not known here", quoted(text)), hint);
         }
         found
     }
@@ -201,7 +201,7 @@ impl<'t> Reader<'t> {
         match field.value {
             Value::Integer(n) if range.contains(n) => return Some(*n),
             Value::Integer(n) => self.fault(field, outside(n), why),
-            Value::Huge(digits) => self.fault(field, outside(&shown(digits)), why),
+            Value::Huge(digits) => self.fault(field, outside(&quoted(digits)), why),
             Value::Float(x) => {
                 let hint = "no fraction, no decimal point, no exponent";
                 self.fault(field, format!("is {x:?}, but a whole number is wanted"), hint);
@@ -290,22 +290,9 @@ fn joined(path: &str, key: &str) -> String {
     }
 }
 
-/// Characters of a user's text that a message repeats.
-const SHOWN: usize = 60;
-
-fn shortened(text: &str) -> String {
-    let head: String = text.chars().take(SHOWN).collect();
-    if head.len() < text.len() { head + "..." } else { head }
-}
-
-/// The user's text in quotes, not too long of it.
-pub fn shown(text: &str) -> String {
-    format!("{:?}", shortened(text))
-}
-
 /// The known word that a slip of the fingers turns into `word`: at most one slip in three letters.
 pub fn nearest<'k>(word: &str, known: &[&'k str]) -> Option<&'k str> {
-    if word.len() > SHOWN {
+    if word.len() > QUOTED {
         return None;
     }
     let lower = word.to_lowercase();

@@ -24,7 +24,7 @@ const MAX_REPEAT: i64 = 1000;
 /// Largest pitch in mm: a crossing of ten metres is a building.
 const MAX_PITCH_MM: f64 = 10_000.0;
 
-/// Taken where [size] is absent, in mm; no verdict depends on it.
+/// Taken where `[size]` is absent, in mm; no verdict depends on it.
 const DEFAULT_PITCH_MM: f64 = 20.0;
 
 /// The assembly, where `pitch` (in mm) could be read.

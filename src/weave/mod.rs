@@ -20,7 +20,7 @@ pub use hanging::{Hanging, hangs_together};
 pub use svg::svg;
 pub use wif::{parse_wif, to_wif};
 
-use crate::fault::{Fault, Faults};
+use crate::fault::{Fault, Faults, quoted};
 use crate::input;
 use serde::Serialize;
 use std::fmt;
@@ -138,7 +138,7 @@ fn run_fault(name: &str, value: u32) -> Fault {
 }
 
 fn abc_fault(text: &str) -> Faults {
-    let what = format!("{text:?} is not a weave [a,b,c]");
+    let what = format!("{} is not a weave [a,b,c]", quoted(text));
     let hint =
         "three whole numbers: a overs, b unders (each 1 to 64), moved by c from weft to weft; as in [2,2,1]";
     Fault { file: String::new(), place: None, key: "abc".into(), what, hint: hint.into() }.into()

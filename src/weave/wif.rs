@@ -1,13 +1,13 @@
 //! Takes a Weaving Information File (version 1.1); gives the draft it weaves, or all that is wrong with it.
 //!
 //! Row j = 0 of the draft is the first pick, column i = 0 the first warp thread; where the shed raises the warp, the
-//! weft passes under. A liftplan goes before treadling and tie-up, as the format says, unless [CONTENTS] denies it. Threads and picks without an
-//! entry, and the entry 0, stand for none. Not promised: colours, spacing, thickness and private sections are not
-//! read; where one thread runs through several shafts, any of them moves it.
+//! weft passes under. A liftplan goes before treadling and tie-up, as the format says, unless `[CONTENTS]` denies it.
+//! Threads and picks without an entry, and the entry 0, stand for none. Not promised: colors, spacing, thickness and
+//! private sections are not read; where one thread runs through several shafts, any of them moves it.
 
 use super::ini::{Entry, Ini, STRICT, Section};
 use super::{Draft, MAX_DRAFT, Origin, Weave};
-use crate::fault::{Fault, Faults, Place};
+use crate::fault::{Fault, Faults, Place, quoted};
 use std::path::Path;
 
 /// Shafts, and treadles, that a file may use: as many as a draft of [`MAX_DRAFT`] different columns or rows needs.
@@ -78,7 +78,7 @@ impl Reader {
         });
     }
 
-    /// Sections that [CONTENTS] promises must stand in the file, as far as the draft needs them.
+    /// Sections that `[CONTENTS]` promises must stand in the file, as far as the draft needs them.
     fn contents(&mut self, ini: &Ini) {
         let Some(contents) = ini.section("contents") else { return };
         for entry in contents.entries.iter().filter(|entry| STRICT.contains(&entry.key.as_str())) {
@@ -92,7 +92,7 @@ impl Reader {
     fn rising(&mut self, ini: &Ini) -> bool {
         let Some(entry) = ini.section("weaving").and_then(|s| s.entry("rising shed")) else { return true };
         yes_no(&entry.value).unwrap_or_else(|| {
-            let what = format!("Rising Shed is {:?}", entry.value);
+            let what = format!("Rising Shed is {}", quoted(&entry.value));
             self.fault(
                 Some(entry.line),
                 what,
@@ -111,7 +111,8 @@ impl Reader {
         match entry.value.parse() {
             Ok(n) if (1..=most).contains(&n) => Some(n),
             _ => {
-                let what = format!("{key} in [{section}] is {:?}, but it must be 1 to {most}", entry.value);
+                let what =
+                    format!("{key} in [{section}] is {}, but it must be 1 to {most}", quoted(&entry.value));
                 self.fault(Some(entry.line), what, "a whole number; of a larger cloth export one repeat");
                 None
             }
@@ -139,7 +140,8 @@ impl Reader {
         for entry in &section.entries {
             let row = entry.key.parse().ok().filter(|row| (1..=sets.len()).contains(row));
             let Some(row) = row else {
-                let what = format!("[{name}] has a line for {:?}, but counts 1 to {}", entry.key, sets.len());
+                let what =
+                    format!("[{name}] has a line for {}, but counts 1 to {}", quoted(&entry.key), sets.len());
                 self.fault(
                     Some(entry.line),
                     what,
@@ -159,8 +161,11 @@ impl Reader {
                 Ok(0) => {}
                 Ok(n) if n <= most => set[(n - 1) / 64] |= 1 << ((n - 1) % 64),
                 _ => {
-                    let what =
-                        format!("[{section}] line {}: {word:?} is not a number up to {most}", entry.key);
+                    let what = format!(
+                        "[{section}] line {}: {} is not a number up to {most}",
+                        quoted(&entry.key),
+                        quoted(word)
+                    );
                     self.fault(
                         Some(entry.line),
                         what,
@@ -193,7 +198,7 @@ impl Reader {
     }
 }
 
-/// Whether a liftplan stands in the file and [CONTENTS] does not deny it.
+/// Whether a liftplan stands in the file and `[CONTENTS]` does not deny it.
 fn has_liftplan(ini: &Ini) -> bool {
     let said = ini.section("contents").and_then(|contents| contents.entry("liftplan"));
     let denied = said.and_then(|entry| yes_no(&entry.value)) == Some(false);
@@ -223,7 +228,7 @@ fn yes_no(word: &str) -> Option<bool> {
 
 /// The draft as a WIF that reads back as the same draft: equal columns share a shaft, equal rows a treadle.
 ///
-/// `title` goes into its [TEXT] section; line breaks in it become spaces.
+/// `title` goes into its `[TEXT]` section; line breaks in it become spaces.
 pub fn to_wif(draft: &Draft, title: &str) -> String {
     let rows = draft.rows();
     let column = |i: usize| rows.iter().map(|row| row.as_bytes()[i]).collect::<Vec<u8>>();
