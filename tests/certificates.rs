@@ -125,7 +125,8 @@ const BROKEN: f64 = 1e-7;
 fn still_true(joined: &Joined, motion: &Value) -> bool {
     let vector = |t: &Value, key: &str| DVec3::from_array([0, 1, 2].map(|k| t[key][k].as_f64().expect("x")));
     let twists = motion["twists"].as_array().expect("twists");
-    let twists: BTreeMap<&str, &Value> = twists.iter().map(|t| (t["part"].as_str().expect("id"), t)).collect();
+    let twists: BTreeMap<&str, &Value> =
+        twists.iter().map(|t| (t["part"].as_str().expect("id"), t)).collect();
     let velocity = |part: PartIx, p: DVec3| {
         twists.get(joined.assembly.part(part).id.as_str()).map_or(DVec3::ZERO, |t| {
             vector(t, "translation") + vector(t, "rotation").cross(p - vector(t, "centre"))
@@ -155,7 +156,8 @@ fn change(answer: &Answer, paths: &[String]) -> BTreeSet<String> {
             let about = format!("{}: {path}: {n} made {to}", answer.name);
             assert!(!accepted(json.clone(), false), "{about}, accepted");
             if accepted(json.clone(), true) {
-                let key: String = path.split('/').filter(|k| k.parse::<usize>().is_err()).collect::<Vec<_>>().join("/");
+                let key: String =
+                    path.split('/').filter(|k| k.parse::<usize>().is_err()).collect::<Vec<_>>().join("/");
                 let beside = BESIDE_THE_PROOF.iter().any(|k| path.ends_with(k));
                 let true_motion = motion(&json, path).is_some_and(|m| still_true(&answer.joined, m));
                 if !(beside || true_motion) {
@@ -196,7 +198,9 @@ fn every_changed_number_is_noticed() {
 fn another_spec_is_another_answer() {
     let text = window([1, 1, 1], 4, 2, 2);
     let answer = checked("plain window", "test.toml", &text);
-    for (from, to) in [("samples = 4", "samples = 5"), ("rise = 0.6", "rise = 0.6001"), ("wefts = 2", "wefts = 3")] {
+    for (from, to) in
+        [("samples = 4", "samples = 5"), ("rise = 0.6", "rise = 0.6001"), ("wefts = 2", "wefts = 3")]
+    {
         let mut json = answer.json.clone();
         json["source"]["text"] = Value::from(text.replace(from, to));
         assert_ne!(json["source"]["text"], answer.json["source"]["text"]);
@@ -212,7 +216,8 @@ fn what_slides_is_never_certified_as_locked() {
     let mut dice = Dice::new(3);
     for (name, (asm, patches), _) in degenerate().into_iter().filter(|c| sliding.contains(&c.0)) {
         for _ in 0..8 {
-            let turn = DQuat::from_xyzw(dice.signed(), dice.signed(), dice.signed(), dice.signed()).normalize();
+            let turn =
+                DQuat::from_xyzw(dice.signed(), dice.signed(), dice.signed(), dice.signed()).normalize();
             let (mut asm, mut patches) = (asm.clone(), patches.clone());
             asm.parts.iter_mut().for_each(|p| p.pose = glam::DAffine3::from_quat(turn));
             for q in &mut patches {
@@ -242,5 +247,12 @@ fn equal_forces(
         size: 1.0,
     };
     let forces = patches.iter().flat_map(|q| q.corners.iter().map(move |&p| force(q, p))).collect();
-    Certificate { kind: "self-stress".into(), still: still.to_vec(), unknowns, rank: unknowns, residual: 0.0, forces }
+    Certificate {
+        kind: "self-stress".into(),
+        still: still.to_vec(),
+        unknowns,
+        rank: unknowns,
+        residual: 0.0,
+        forces,
+    }
 }

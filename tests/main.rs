@@ -1,10 +1,10 @@
 //! One test binary, a file for each kind of promise. Slow tests are marked `#[ignore]`; `tests/run` runs them too.
 
-mod fab;
 mod bad_input;
-mod hands;
 mod certificates;
+mod fab;
 mod golden;
+mod hands;
 mod known;
 mod laws;
 mod mesh;

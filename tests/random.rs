@@ -57,7 +57,13 @@ fn square(a: usize, b: usize, at: Voxel, axis: usize) -> Patch {
 }
 
 /// Cells given to parts that grow from a random cell each; a cell in `dense` of 4 stays empty.
-fn grown(dice: &mut Dice, cells: usize, beside: &[Vec<usize>], count: usize, dense: usize) -> Vec<Option<usize>> {
+fn grown(
+    dice: &mut Dice,
+    cells: usize,
+    beside: &[Vec<usize>],
+    count: usize,
+    dense: usize,
+) -> Vec<Option<usize>> {
     let mut owner = vec![None; cells];
     let solid: Vec<bool> = (0..cells).map(|_| dice.below(4) < dense).collect();
     for (part, cell) in dice.shuffled(cells).into_iter().take(count).enumerate() {
@@ -99,7 +105,9 @@ fn random_tetrahedra(dice: &mut Dice) -> Made {
     let size = [0; 3].map(|_| 1 + dice.below(2) as i32);
     let mut corner: BTreeMap<Voxel, DVec3> = BTreeMap::new();
     let mut tetrahedra: Vec<[Voxel; 4]> = Vec::new();
-    for (x, y, z) in (0..size[0]).flat_map(|x| (0..size[1]).flat_map(move |y| (0..size[2]).map(move |z| (x, y, z)))) {
+    for (x, y, z) in
+        (0..size[0]).flat_map(|x| (0..size[1]).flat_map(move |y| (0..size[2]).map(move |z| (x, y, z))))
+    {
         for order in [[0, 1, 2], [0, 2, 1], [1, 0, 2], [1, 2, 0], [2, 0, 1], [2, 1, 0]] {
             let mut path = [[x, y, z]; 4];
             for k in 0..3 {
@@ -110,7 +118,9 @@ fn random_tetrahedra(dice: &mut Dice) -> Made {
         }
     }
     for v in tetrahedra.iter().flatten() {
-        corner.entry(*v).or_insert_with(|| point(*v) + [0.0; 3].map(|_| (dice.signed() * 4.0).round() / 16.0).into());
+        corner
+            .entry(*v)
+            .or_insert_with(|| point(*v) + [0.0; 3].map(|_| (dice.signed() * 4.0).round() / 16.0).into());
     }
     between_tetrahedra(dice, &tetrahedra, &corner)
 }

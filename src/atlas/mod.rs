@@ -56,7 +56,7 @@ impl Default for Settings {
 }
 
 impl Settings {
-    fn profile(&self) -> ProfileSpec {
+    pub fn profile(&self) -> ProfileSpec {
         let &Settings { rise, lift, cover, samples } = self;
         ProfileSpec { shape: Shape::Rise(rise), lift, cover, samples, bounds: Bounds::Sandwich }
     }

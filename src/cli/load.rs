@@ -58,7 +58,9 @@ impl Placed {
 /// A word of warning where the infinite fabric does not hang together.
 pub fn falls_apart(weave: &Weave) -> Option<String> {
     match hangs_together(&weave.draft) {
-        Hanging::Together => None,
+        Hanging::Together => weave.common_divisor().filter(|&d| d > 1).map(|d| {
+            format!("c and a + b have the common divisor {d}: the usual theorem is silent, but the weave hangs together")
+        }),
         Hanging::FallsApart { lifts } => {
             let names: Vec<String> = lifts.iter().map(ToString::to_string).collect();
             Some(format!("this weave falls apart: {} lift off the rest (one period named)", names.join(", ")))
@@ -73,8 +75,7 @@ pub fn weave(subject: &str) -> Result<Weave, Faults> {
     if looks_like_abc {
         return Weave::parse_abc(subject);
     }
-    let ending = path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase());
-    if !matches!(ending.as_deref(), Some("toml" | "json")) {
+    if !is_spec(path) {
         return Weave::read(path);
     }
     match spec(path)?.spec.subject {
@@ -83,7 +84,13 @@ pub fn weave(subject: &str) -> Result<Weave, Faults> {
     }
 }
 
-pub fn no_weave(path: &Path) -> Faults {
+/// Whether a file's name is that of a spec.
+pub fn is_spec(path: &Path) -> bool {
+    let ending = path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase());
+    matches!(ending.as_deref(), Some("toml" | "json"))
+}
+
+fn no_weave(path: &Path) -> Faults {
     let fault = Fault {
         file: path.display().to_string(),
         place: None,

@@ -53,17 +53,27 @@ fn dispatch(args: &Args) -> Result<Told, Trouble> {
             make::export(&load::spec(file)?.joined()?, *format, *layout, out)
         }
         Some(Verb::Verify { answer }) => questions::verify(answer),
-        Some(Verb::Atlas { max_n, out }) => questions::atlas(*max_n, out),
+        Some(Verb::Atlas { max_n, out }) => questions::atlas(*max_n, out, &args.common),
         Some(Verb::Report { file, out }) => run::report(file, out, &args.common),
         Some(Verb::Schema) => schema::schema(),
     }
 }
 
+/// Remarks that a terminal shows; a hundred parts may each have one.
+const MOST_REMARKS: usize = 6;
+
 /// The answer on stdout, remarks on stderr. A reader who closes the pipe early has what he wanted.
 fn print(told: &Told, common: &Common) -> Result<News, Trouble> {
     if !common.quiet {
-        for remark in &told.remarks {
+        for remark in told.remarks.iter().take(MOST_REMARKS) {
             let _ = writeln!(std::io::stderr(), "note: {remark}");
+        }
+        if told.remarks.len() > MOST_REMARKS {
+            let _ = writeln!(
+                std::io::stderr(),
+                "note: and {} more (--json has all)",
+                told.remarks.len() - MOST_REMARKS
+            );
         }
     }
     let text = if common.json { format!("{}\n", told.json) } else { told.text() };

@@ -2,11 +2,16 @@
 //!
 //! Not promised: anything beyond what the stage that answers promises.
 
-use super::args::Repeats;
+use super::args::{Common, Repeats};
 use super::load::{self, Placed};
 use super::told::{News, Told, Trouble};
 use super::words;
 use crate::assembly::PartIx;
+use crate::atlas::{self, Ask};
+use crate::chirality::{
+    self,
+    answer::{Handedness, Hands, WarpIs},
+};
 use crate::contact::Joined;
 use crate::fault::Fault;
 use crate::flex as flexible;
@@ -20,7 +25,8 @@ use crate::sequence::{self, Outcome, Plan, Searched};
 use crate::spec::{self, Bounds, ProfileSpec, Shape};
 use crate::verify;
 use crate::weave::{self, Weave};
-use std::path::Path;
+use serde::Serialize;
+use std::path::{Path, PathBuf};
 
 pub fn check(placed: &Placed, fix: Option<&str>) -> Result<Told, Trouble> {
     let joined = &placed.joined;
@@ -209,12 +215,52 @@ pub fn verify(file: &Path) -> Result<Told, Trouble> {
     Ok(Told::new(News::of(verified.valid), &verified, &file.display().to_string(), "Verify", chapter))
 }
 
-pub fn chirality(_s: &str) -> Result<Told, Trouble> {
-    Err(Trouble::Word("error: not built yet".into()))
+pub fn chirality(subject: &str) -> Result<Told, Trouble> {
+    let path = Path::new(subject);
+    if load::is_spec(path) {
+        return told_chirality(&load::spec(path)?.joined()?);
+    }
+    let weave = load::weave(subject)?;
+    let remarks = load::falls_apart(&weave);
+    let hands = chirality::of_weave(&weave, &atlas::Settings::default().profile()).map_err(hands_fault)?;
+    let mut told = told_hands(&Hands { name: subject.into(), ..hands });
+    told.remarks.extend(remarks);
+    Ok(told)
 }
-pub fn told_chirality(_p: &Placed) -> Result<Told, Trouble> {
-    Err(Trouble::Word("error: not built yet".into()))
+
+pub fn told_chirality(placed: &Placed) -> Result<Told, Trouble> {
+    let hands = chirality::of_assembly(&placed.spec, &placed.joined).map_err(hands_fault)?;
+    Ok(told_hands(&hands))
 }
-pub fn atlas(_n: u32, _o: &Path) -> Result<Told, Trouble> {
-    Err(Trouble::Word("error: not built yet".into()))
+
+fn hands_fault(e: chirality::HandsError) -> Trouble {
+    argument(e.to_string(), "change rise, lift, cover or samples".into()).into()
+}
+
+fn told_hands(hands: &Hands) -> Told {
+    let undecided = [hands.tile, hands.assembly].contains(&Some(Handedness::Undecided));
+    let news = News::of(!undecided && hands.warp_is != Some(WarpIs::Undecided));
+    Told {
+        remarks: hands.remarks.clone(),
+        ..Told::new(news, hands, &hands.name, "Hands", words::hands(hands))
+    }
+}
+
+pub fn atlas(max_n: u32, out: &Path, common: &Common) -> Result<Told, Trouble> {
+    let ask = Ask::new(max_n);
+    let all = atlas::weaves(max_n).len();
+    let written = atlas::write(&ask, out, |row| {
+        if !common.quiet {
+            eprintln!("[{},{},{}] of {all} weaves", row.a, row.b, row.c);
+        }
+    })?;
+    let answer = AtlasAnswer { verb: "atlas", rows: &written.rows, files: &written.files };
+    Ok(Told::new(News::Good, &answer, &format!("weaves up to n = {max_n}"), "Atlas", words::atlas(&written)))
+}
+
+#[derive(Serialize)]
+struct AtlasAnswer<'a> {
+    verb: &'static str,
+    rows: &'a [atlas::Row],
+    files: &'a [PathBuf],
 }

@@ -3,6 +3,7 @@
 //! Not promised: that a file which fits the schema is free of faults; bounds that depend on other keys are not in it.
 
 use super::told::{News, Told, Trouble};
+use crate::chirality::answer::Hands;
 use crate::report::answer::{CheckAnswer, FlexAnswer, PlanAnswer, RepeatsAnswer, WeaveAnswer};
 use crate::report::content::{Chapter, Tone};
 use crate::spec::shape::SpecFile;
@@ -18,6 +19,7 @@ pub fn schema() -> Result<Told, Trouble> {
         ("flex", schema_for!(FlexAnswer)),
         ("repeats", schema_for!(RepeatsAnswer)),
         ("weave", schema_for!(WeaveAnswer)),
+        ("chirality", schema_for!(Hands)),
         ("verify", schema_for!(Verified)),
     ]);
     let pretty = serde_json::to_string_pretty(&all).unwrap_or_default();

@@ -116,7 +116,10 @@ fn locked_alone(joined: &Joined, ids: &[String], lock: &answer::Certificate) -> 
     if (held && missing != own) || (!held && missing > 1) {
         return Err("a lock is claimed with more parts fixed than may be".into());
     }
-    certificate::certificate(asm, &patches, lock, About::RigidMotions)
+    let outside = asm.ids().filter(|p| !inside.contains(p)).map(|p| asm.part(p).id.clone());
+    let still = lock.still.iter().cloned().chain(outside).collect();
+    let alone = answer::Certificate { still, ..lock.clone() };
+    certificate::certificate(asm, &patches, &alone, About::RigidMotions)
 }
 
 fn parts(joined: &Joined, ids: &[String]) -> Result<Vec<PartIx>, String> {
