@@ -63,8 +63,8 @@ fn contact_facets(asm: &Assembly, p: PartIx, patches: &[Patch]) -> Vec<Vec<bool>
 
 fn drawn_in(cells: &[Cell], touching: &[Vec<bool>], by: f64) -> Solid {
     let cut = |(cell, touching): (&Cell, &Vec<bool>)| {
-        let moved = cell.planes.iter().zip(touching).filter(|(_, t)| **t).map(|(p, _)| p);
-        moved.fold(Some(cell.clone()), |left, &(n, d)| left.and_then(|c| below(&c, n, d - by)))
+        let mut moved = cell.planes.iter().zip(touching).filter(|(_, t)| **t).map(|(p, _)| p);
+        moved.try_fold(cell.clone(), |left, &(n, d)| below(&left, n, d - by))
     };
     let mut solid = Solid::default();
     for cell in cells.iter().zip(touching).filter_map(cut) {
