@@ -1,5 +1,5 @@
-//! Assemblies of mesh files: verdicts of fixtures in pairs, of other people's cases, the laws that no frame may break,
-//! and files and overlaps that must be refused.
+//! Assemblies of mesh files: verdicts of fixtures in pairs, of other people's cases, the laws that no frame
+//! may break, and files and overlaps that must be refused.
 
 use glam::{DAffine3, DQuat, DVec3};
 use std::collections::BTreeMap;

@@ -1,7 +1,9 @@
-//! Takes polygons over welded vertices, gives rings that close: every directed edge is met by its reverse as often.
+//! Takes polygons over welded vertices, gives rings that close: every directed edge is met by its reverse as
+//! often.
 //!
-//! Promised: what is handed on bounds a volume, outward; a vertex in the middle of a longer edge (a T-junction) is made
-//! a corner of that edge's faces. Not promised: that the surface does not cross itself, or touches itself nowhere.
+//! Promised: what is handed on bounds a volume, outward; a vertex in the middle of a longer edge (a
+//! T-junction) is made a corner of that edge's faces. Not promised: that the surface does not cross itself,
+//! or touches itself nowhere.
 
 use super::faults::{Found, Place, found};
 use super::soup::Soup;
@@ -29,8 +31,8 @@ pub(super) struct Closed {
     pub touching_edges: usize,
 }
 
-/// How far a point of the file may stand from a line or plane through others of its points and still be meant to lie
-/// on it, in model units: each coordinate of either is known to half a unit only, in three directions.
+/// How far a point of the file may stand from a line or plane through others of its points and still be meant
+/// to lie on it, in model units: each coordinate of either is known to half a unit only, in three directions.
 pub(super) fn slack(resolution: f64) -> f64 {
     2.0 * 3f64.sqrt() * resolution
 }
@@ -105,8 +107,9 @@ fn unbalanced(rings: &[Vec<u32>]) -> Vec<((u32, u32), usize, usize)> {
     count.iter().map(pair).filter(|&(_, n, m)| n > m).collect()
 }
 
-/// Puts vertices that stand on an edge between its ends into the rings of that edge, until nothing changes. Returns how
-/// many were put in. Only ends of edges without their reverse are tried, and only such edges are split.
+/// Puts vertices that stand on an edge between its ends into the rings of that edge, until nothing changes.
+/// Returns how many were put in. Only ends of edges without their reverse are tried, and only such edges are
+/// split.
 fn split_edges(rings: &mut [Vec<u32>], points: &[DVec3], width: f64) -> usize {
     let mut inserted = 0;
     loop {
@@ -207,7 +210,8 @@ fn canonical(ring: impl Iterator<Item = u32> + Clone) -> Vec<u32> {
     ring
 }
 
-/// Takes out pairs of a face and its reverse: walls inside, or without thickness, bound nothing. Returns how many pairs.
+/// Takes out pairs of a face and its reverse: walls inside, or without thickness, bound nothing. Returns how
+/// many pairs.
 fn cancel(rings: &mut Vec<Vec<u32>>) -> usize {
     let mut at: BTreeMap<Vec<u32>, Vec<usize>> = BTreeMap::new();
     let mut gone = vec![false; rings.len()];

@@ -1,7 +1,8 @@
 //! Takes facets, tells where an edge of the surface pierces a facet of the same shell.
 //!
-//! Sound: what is reported crosses by more than `width`. Not complete: a crossing shallower than that, or one along
-//! facets that only touch, is not seen. Shells that reach into each other are not reported: their union is one part.
+//! Sound: what is reported crosses by more than `width`. Not complete: a crossing shallower than that, or one
+//! along facets that only touch, is not seen. Shells that reach into each other are not reported: their union
+//! is one part.
 
 use super::close::edges;
 use super::shells::components;

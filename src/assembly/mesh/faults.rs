@@ -1,4 +1,5 @@
-//! Takes nothing, gives the words in which a mesh file is refused: each fault with its file, its place and a hint.
+//! Takes nothing, gives the words in which a mesh file is refused: each fault with its file, its place and a
+//! hint.
 //!
 //! Not promised: that two faults have different causes (one missing triangle opens three edges).
 

@@ -1,8 +1,9 @@
 //! Takes facets, gives each the unit normal of the flat face that it is part of.
 //!
-//! A face is grown from its largest facet over shared edges while every corner stays on its plane as well as the file
-//! knows it; so thin triangles take the normal of their face, which is known far better than their own. Not promised:
-//! that a smooth surface, cut finer than the file's resolution, keeps every facet's own normal.
+//! A face is grown from its largest facet over shared edges while every corner stays on its plane as well as
+//! the file knows it; so thin triangles take the normal of their face, which is known far better than their
+//! own. Not promised: that a smooth surface, cut finer than the file's resolution, keeps every facet's own
+//! normal.
 
 use super::close::{area_vector, edges, slack};
 use glam::DVec3;
@@ -47,8 +48,8 @@ impl Plane {
         Plane { o, n: area.normalize(), width, height: area.length() / longest, tolerance }
     }
 
-    /// Corners off by `width` tilt a facet of height h by up to 2 `width` / h: what that makes at distance d is allowed,
-    /// as far as the tolerance goes.
+    /// Corners off by `width` tilt a facet of height h by up to 2 `width` / h: what that makes at distance d
+    /// is allowed, as far as the tolerance goes.
     fn holds(&self, facet: &[u32], points: &[DVec3]) -> bool {
         facet.iter().all(|&i| {
             let r = points[i as usize] - self.o;
@@ -86,7 +87,8 @@ pub(crate) fn neighbors(facets: &[Vec<u32>]) -> Vec<Vec<usize>> {
     facets.iter().enumerate().map(beside).collect()
 }
 
-/// The width within which corners lie on their face, in model units: the file's own resolution, never above the tolerance.
+/// The width within which corners lie on their face, in model units: the file's own resolution, never above
+/// the tolerance.
 pub(super) fn width(resolution: f64, tolerance: f64) -> f64 {
     slack(resolution).min(tolerance)
 }

@@ -1,8 +1,8 @@
 //! Takes mesh files (STL, OBJ, 3MF), gives one closed solid for each.
 //!
-//! Promised: closed, outward, no face twice, vertices welded by identity, facets planar and convex; a file that is not
-//! so is refused with all its faults. Not promised: that the surface touches itself
-//! nowhere, nor that several shells keep clear of each other.
+//! Promised: closed, outward, no face twice, vertices welded by identity, facets planar and convex; a file
+//! that is not so is refused with all its faults. Not promised: that the surface touches itself nowhere, nor
+//! that several shells keep clear of each other.
 
 mod cells;
 mod close;

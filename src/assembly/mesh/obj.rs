@@ -1,6 +1,8 @@
-//! Takes the text of a Wavefront OBJ file, gives its polygons; `v` and `f` count, everything else is passed over.
+//! Takes the text of a Wavefront OBJ file, gives its polygons; `v` and `f` count, everything else is passed
+//! over.
 //!
-//! Not promised: free-form surfaces (`cstype`, `curv`, `surf`) and lines are not faces; a file of those alone is refused.
+//! Not promised: free-form surfaces (`cstype`, `curv`, `surf`) and lines are not faces; a file of those alone
+//! is refused.
 
 use super::faults::{Found, Place, found};
 use super::soup::{Soup, finite, half_unit};

@@ -1,6 +1,7 @@
 //! Takes a planar ring of corners, gives convex facets over the same corners: the ring itself, or triangles.
 //!
-//! Promised: no triangle is degenerate in the plane of projection (exact predicates). Not promised: fewest pieces.
+//! Promised: no triangle is degenerate in the plane of projection (exact predicates). Not promised: fewest
+//! pieces.
 
 use super::close::area_vector;
 use glam::{DVec2, DVec3};
@@ -9,8 +10,8 @@ use robust::{Coord, orient2d};
 /// Above so many corners the first ear is taken instead of the best: choosing costs the cube of the count.
 const CHOOSY: usize = 200;
 
-/// Convex facets of the ring, or nothing where the ring crosses itself. A corner nearer than `width` to the line of its
-/// neighbors counts as flat.
+/// Convex facets of the ring, or nothing where the ring crosses itself. A corner nearer than `width` to the
+/// line of its neighbors counts as flat.
 pub(super) fn facets(ring: &[u32], points: &[DVec3], width: f64) -> Option<Vec<Vec<u32>>> {
     let normal = area_vector(ring, points);
     let flat: Vec<DVec2> =

@@ -1,4 +1,5 @@
-//! Takes rings that close, tells which hang together and that each shell faces outward; a void faces inward, inside a body.
+//! Takes rings that close, tells which hang together and that each shell faces outward; a void faces inward,
+//! inside a body.
 //!
 //! Not promised: that shells keep clear of each other.
 

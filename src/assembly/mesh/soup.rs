@@ -1,7 +1,8 @@
-//! Takes corners as they stand in a file, gives polygons over vertices that are welded by identity of coordinates.
+//! Takes corners as they stand in a file, gives polygons over vertices that are welded by identity of
+//! coordinates.
 //!
-//! Not promised: that the polygons close. Corners that differ in the last bit are two vertices; nothing is guessed by
-//! distance.
+//! Not promised: that the polygons close. Corners that differ in the last bit are two vertices; nothing is
+//! guessed by distance.
 
 use super::faults::{Found, Place, found};
 use glam::DVec3;
@@ -13,7 +14,8 @@ pub(super) struct Soup {
     pub vertices: Vec<DVec3>,
     pub faces: Vec<Vec<u32>>,
     pub places: Vec<Place>,
-    /// Half a unit in the last place in which the file wrote its coordinates, in model units: no coordinate is known better.
+    /// Half a unit in the last place in which the file wrote its coordinates, in model units: no coordinate
+    /// is known better.
     pub resolution: f64,
     ids: HashMap<[u64; 3], u32>,
 }
@@ -40,7 +42,8 @@ impl Soup {
         self.vertices.iter().map(|p| p.abs().max_element()).fold(0.0, f64::max)
     }
 
-    /// Sets `resolution`: as single precision where every coordinate is one, otherwise `written`, never below round-off.
+    /// Sets `resolution`: as single precision where every coordinate is one, otherwise `written`, never below
+    /// round-off.
     pub fn settle_resolution(&mut self, written: f64) {
         let single = self.vertices.iter().all(|p| p.to_array().iter().all(|&x| f64::from(x as f32) == x));
         let half_ulp = if single { f64::from(f32::EPSILON) / 2.0 } else { f64::EPSILON / 2.0 };

@@ -1,7 +1,8 @@
 //! Takes the bytes of a 3MF package, gives the triangles of all its build items as one soup, in model units.
 //!
-//! Read are meshes, components and transforms, also from several model parts (production extension). Not promised: beam
-//! lattices, booleans, displacements and slices are passed over; objects that are support are left out.
+//! Read are meshes, components and transforms, also from several model parts (production extension). Not
+//! promised: beam lattices, booleans, displacements and slices are passed over; objects that are support are
+//! left out.
 
 use super::faults::{Found, Place, found};
 use super::soup::{Soup, finite, half_unit};

@@ -1,7 +1,9 @@
-//! Takes the outward normals of two convex corners that touch in a point, gives the planes that separate them there.
+//! Takes the outward normals of two convex corners that touch in a point, gives the planes that separate them
+//! there.
 //!
-//! The polar of a convex cone is spanned by its outward normals, so the separating normals are the common directions of
-//! one polar and the other's negative. Not promised: corners with more than [`MOST`] facets are not decided.
+//! The polar of a convex cone is spanned by its outward normals, so the separating normals are the common
+//! directions of one polar and the other's negative. Not promised: corners with more than [`MOST`] facets are
+//! not decided.
 
 use glam::DVec3;
 
@@ -18,12 +20,12 @@ pub(super) enum Separation {
     Undecided,
 }
 
-/// Error of a unit direction computed from coordinates about the assembly's middle: features a ten-millionth of its size
-/// still have directions this good (f64 round-off 1e-16 over 1e-7).
+/// Error of a unit direction computed from coordinates about the assembly's middle: features a ten-millionth
+/// of its size still have directions this good (f64 round-off 1e-16 over 1e-7).
 const ROUND_OFF: f64 = 1e-9;
 
-/// Separating normals within this angle (radians) are one: on a lever of a thousand tolerances the difference moves a
-/// point by a thousandth of a tolerance.
+/// Separating normals within this angle (radians) are one: on a lever of a thousand tolerances the difference
+/// moves a point by a thousandth of a tolerance.
 const ONE: f64 = 1e-6;
 
 /// The search takes the fourth power of the number of facets.

@@ -1,16 +1,18 @@
-//! Takes two shapes, gives the convex pieces on which their faces lie flat on each other, or lie flush the same way.
+//! Takes two shapes, gives the convex pieces on which their faces lie flat on each other, or lie flush the
+//! same way.
 //!
-//! Facets count as coplanar when over their whole common region they are no farther apart than the tolerance, and their
-//! angle would not part them by more over the smaller facet's longest edge. Not promised: a wedge cut into facets smaller
-//! than tolerance / angle reads as flat on its first few.
+//! Facets count as coplanar when over their whole common region they are no farther apart than the tolerance,
+//! and their angle would not part them by more over the smaller facet's longest edge. Not promised: a wedge
+//! cut into facets smaller than tolerance / angle reads as flat on its first few.
 
 use super::polygon;
 use super::shape::Shape;
 use glam::{DVec2, DVec3};
 use std::collections::BTreeMap;
 
-/// Two faces at a larger angle than this (radians) do not lie flat on each other, however small they are: a region that
-/// stays within the tolerance at this angle is 20 tolerances wide at most, too short a lever to be told from an edge.
+/// Two faces at a larger angle than this (radians) do not lie flat on each other, however small they are: a
+/// region that stays within the tolerance at this angle is 20 tolerances wide at most, too short a lever to
+/// be told from an edge.
 const STEEPEST: f64 = 0.1;
 
 /// A region on which two shapes touch face to face, or an intruding one where their faces look the same way.
@@ -109,7 +111,8 @@ fn level_regions(level: &[Piece], frame: &Frame, tilt: f64, tolerance: f64) -> V
     .collect()
 }
 
-/// Where facet f of a and facet g of b overlap, seen along the normal, if they stay within the tolerance there.
+/// Where facet f of a and facet g of b overlap, seen along the normal, if they stay within the tolerance
+/// there.
 fn piece(a: &Shape, b: &Shape, f: usize, g: usize, frame: &Frame, tolerance: f64) -> Option<Piece> {
     let ring = |s: &Shape, k: usize| {
         let mut r: Vec<DVec2> = s.ring(k).map(|p| frame.flat(p)).collect();

@@ -1,6 +1,7 @@
 //! Takes a shape, tells its form at each vertex, edge and point: flat, convex, reflex or saddle.
 //!
-//! Not promised: a point nearer than the tolerance to several features is taken to be at the lowest and nearest one.
+//! Not promised: a point nearer than the tolerance to several features is taken to be at the lowest and
+//! nearest one.
 
 use super::overlap::{face_distance, segment_distance};
 use super::shape::{Face, Shape, around};
@@ -9,8 +10,8 @@ use parry3d_f64::bounding_volume::{Aabb, BoundingVolume};
 use parry3d_f64::partitioning::{Bvh, BvhBuildStrategy};
 use std::collections::BTreeMap;
 
-/// Sine below which two faces count as one plane: round-off of unit normals, with room for features a ten-millionth of
-/// the assembly.
+/// Sine below which two faces count as one plane: round-off of unit normals, with room for features a
+/// ten-millionth of the assembly.
 const FLAT: f64 = 1e-9;
 
 /// What the solid looks like from a point of its surface, seen close by.

@@ -1,8 +1,8 @@
 //! Takes an assembly of closed meshes, gives its contact patches; parts that overlap are refused.
 //!
-//! Promised: every patch is really there within the tolerance, and its rows are necessary conditions on first-order
-//! motion. Not promised: contacts without a unique normal get no row (the safe side for *locked*, not for *free*); they
-//! are listed as assumed.
+//! Promised: every patch is really there within the tolerance, and its rows are necessary conditions on
+//! first-order motion. Not promised: contacts without a unique normal get no row (the safe side for *locked*,
+//! not for *free*); they are listed as assumed.
 
 mod cone;
 mod flush;
@@ -29,7 +29,8 @@ pub struct Facts {
     pub kind: Kind,
     /// No more than this lies between the two surfaces over the patch, in model units.
     pub gap: f64,
-    /// Angle between the two surfaces, in radians: measured for faces, a bound for edges, nothing to measure for points.
+    /// Angle between the two surfaces, in radians: measured for faces, a bound for edges, nothing to measure
+    /// for points.
     pub tilt: f64,
 }
 
@@ -44,8 +45,8 @@ pub enum Kind {
     Point,
 }
 
-/// A place where two parts touch without a normal that could be vouched for: it got no row. That is the safe side for
-/// *locked*; a *free* verdict may owe something to it.
+/// A place where two parts touch without a normal that could be vouched for: it got no row. That is the safe
+/// side for *locked*; a *free* verdict may owe something to it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Assumed {
     pub a: PartIx,
@@ -71,8 +72,8 @@ pub struct Overlap {
     pub b: PartIx,
     pub a_id: String,
     pub b_id: String,
-    /// How far a point of one was found below the surface of the other, or the diameter of a ball found in both: a lower
-    /// bound, in model units.
+    /// How far a point of one was found below the surface of the other, or the diameter of a ball found in
+    /// both: a lower bound, in model units.
     pub depth: f64,
     pub at: DVec3,
 }

@@ -1,9 +1,10 @@
 //! Takes two shapes, tells how deep one reaches into the other.
 //!
-//! Sound: a depth that is given is really reached, at the point that is given. Complete for shapes whose convex cells are
-//! known, up to overlaps so thin that they hold no ball as wide as the tolerance. Without cells it looks at every stretch of
-//! every edge between the faces that it pierces, the middle of every facet, and the space under faces that lie flush the
-//! same way; an overlap that shows at none of these is not seen.
+//! Sound: a depth that is given is really reached, at the point that is given. Complete for shapes whose
+//! convex cells are known, up to overlaps so thin that they hold no ball as wide as the tolerance. Without
+//! cells it looks at every stretch of every edge between the faces that it pierces, the middle of every
+//! facet, and the space under faces that lie flush the same way; an overlap that shows at none of these is
+//! not seen.
 
 use super::flush::{Facing, regions};
 use super::shape::{Shape, around};
@@ -13,8 +14,8 @@ use crate::solid::Cell;
 use glam::DVec3;
 use parry3d_f64::bounding_volume::BoundingVolume;
 
-/// How deep, in model units: either `at` is on one surface and that far below the other, or a ball of that diameter
-/// around it is in both shapes.
+/// How deep, in model units: either `at` is on one surface and that far below the other, or a ball of that
+/// diameter around it is in both shapes.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Depth {
     pub at: DVec3,

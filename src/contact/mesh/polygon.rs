@@ -1,6 +1,7 @@
 //! Takes convex polygons in the plane, gives their intersection, hull, area and least width.
 //!
-//! Everything here is f64 without exact predicates: results are good to round-off, and callers compare with a tolerance.
+//! Everything here is f64 without exact predicates: results are good to round-off, and callers compare with a
+//! tolerance.
 
 use glam::DVec2;
 
@@ -38,7 +39,8 @@ fn halved(p: &[DVec2], side: impl Fn(DVec2) -> f64) -> Vec<DVec2> {
     out
 }
 
-/// Convex hull, counter-clockwise, from its least corner; corners that jut out by no more than `slack` are left out.
+/// Convex hull, counter-clockwise, from its least corner; corners that jut out by no more than `slack` are
+/// left out.
 pub(super) fn hull(points: impl IntoIterator<Item = DVec2>, slack: f64) -> Vec<DVec2> {
     let mut p: Vec<DVec2> = points.into_iter().collect();
     p.sort_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
@@ -98,7 +100,8 @@ pub(super) fn distance(p: &[DVec2], x: DVec2) -> f64 {
     if inside { 0.0 } else { (0..n).map(to_edge).fold(f64::INFINITY, f64::min) }
 }
 
-/// Joins pieces with disjoint interiors where their union is convex but for `tolerance` on average; fewer pieces, same region.
+/// Joins pieces with disjoint interiors where their union is convex but for `tolerance` on average; fewer
+/// pieces, same region.
 pub(super) fn joined(mut pieces: Vec<Vec<DVec2>>, tolerance: f64, slack: f64) -> Vec<Vec<DVec2>> {
     if let Some(whole) = union_if_convex(&pieces, tolerance, slack) {
         return vec![whole];

@@ -1,9 +1,10 @@
-//! Takes two shapes and the faces on which they lie flat, gives the contacts that are smaller than a face: edges along
-//! faces and grooves, vertices, crossing edges.
+//! Takes two shapes and the faces on which they lie flat, gives the contacts that are smaller than a face:
+//! edges along faces and grooves, vertices, crossing edges.
 //!
-//! A row is given where first-order motion must obey it: a point of one part against a flat or reflex place of the other
-//! (its free space is convex there: one row for each face), or two convex corners with one separating plane. All else
-//! gets no row and is listed. Not promised: at a saddle that a given patch touches, nothing more is said.
+//! A row is given where first-order motion must obey it: a point of one part against a flat or reflex place
+//! of the other (its free space is convex there: one row for each face), or two convex corners with one
+//! separating plane. All else gets no row and is listed. Not promised: at a saddle that a given patch
+//! touches, nothing more is said.
 
 use super::cone::{Separation, separation};
 use super::flush::Flush;
@@ -26,7 +27,8 @@ pub(super) struct Touch {
 pub enum Why {
     /// Many planes separate the two convex corners (parallel edges, two vertices, a vertex on an edge).
     ManyNormals,
-    /// No plane separates them within round-off, although they reach into each other by less than the tolerance.
+    /// No plane separates them within round-off, although they reach into each other by less than the
+    /// tolerance.
     NoNormal,
     /// One of them is a saddle, or a place where the part touches itself.
     Saddle,
@@ -125,7 +127,8 @@ fn continued(p: &[DVec3], q: &[DVec3], reach: f64) -> Option<Vec<DVec3>> {
     straight.then(|| vec![start, end])
 }
 
-/// Whether a row with this normal is there at p already. A face's normal is the mean of two that differ by its tilt.
+/// Whether a row with this normal is there at p already. A face's normal is the mean of two that differ by
+/// its tilt.
 fn known(all: &Touches, faces: &[Flush], n: DVec3, p: DVec3, reach: f64) -> bool {
     faces.iter().any(|f| angle(f.normal, n) <= f.tilt + SAME && on_polygon(f, p, reach))
         || all.rows.iter().any(|t| angle(t.normal, n) <= SAME && on_stretch(&t.corners, p, reach))
@@ -223,9 +226,9 @@ fn joined(mut spans: Vec<[f64; 2]>, gap: f64) -> Vec<[f64; 2]> {
     })
 }
 
-/// The span of the segment over facet f, if it is longer than twice the tolerance and stays within it of the plane. The
-/// whole segment must run along the plane as well as that, or the facet's length of it: a short stretch over a corner of the
-/// facet would pass at any slope.
+/// The span of the segment over facet f, if it is longer than twice the tolerance and stays within it of the
+/// plane. The whole segment must run along the plane as well as that, or the facet's length of it: a short
+/// stretch over a corner of the facet would pass at any slope.
 fn within_face(s: &Shape, f: usize, p: DVec3, q: DVec3, tolerance: f64) -> Option<[f64; 2]> {
     let n = s.faces[f].normal;
     let ring: Vec<DVec3> = s.ring(f).collect();

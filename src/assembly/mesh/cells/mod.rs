@@ -1,8 +1,9 @@
 //! Takes a closed solid, gives convex cells with disjoint interiors whose union it is.
 //!
-//! Space is cut along the planes of the solid's own facets until no facet is left inside a piece; a piece is then all in
-//! or all out. A convex solid is its own one cell. Cost: cells grow with the square of the reflex faces at worst; beyond
-//! [`MOST`] it is given up. Promised: the cells' volumes add up to the solid's (checked). Not promised: fewest cells.
+//! Space is cut along the planes of the solid's own facets until no facet is left inside a piece; a piece is
+//! then all in or all out. A convex solid is its own one cell. Cost: cells grow with the square of the reflex
+//! faces at worst; beyond [`MOST`] it is given up. Promised: the cells' volumes add up to the solid's
+//! (checked). Not promised: fewest cells.
 
 pub(crate) mod polytope;
 
@@ -141,7 +142,8 @@ fn holds(solid: &Solid, cell: &Cell) -> bool {
     solid.triangles().map(seen).sum::<f64>() > 2.0 * std::f64::consts::PI
 }
 
-/// The plane, of those tried, that cuts the fewest scraps; of those the one with most scraps in its own plane or below.
+/// The plane, of those tried, that cuts the fewest scraps; of those the one with most scraps in its own plane
+/// or below.
 fn best(scraps: &[Scrap], width: f64) -> Plane {
     let step = scraps.len().div_ceil(TRIED);
     let cost = |plane: Plane| {

@@ -1,7 +1,7 @@
 //! Takes a convex polytope and a plane, gives its two halves.
 //!
-//! Corners within `width` of the plane count as on it, so no half is thinner than that. Not promised: exactness beyond
-//! round-off for the corners that a cut makes.
+//! Corners within `width` of the plane count as on it, so no half is thinner than that. Not promised:
+//! exactness beyond round-off for the corners that a cut makes.
 
 use crate::solid::Cell;
 use glam::{DVec2, DVec3};
@@ -128,8 +128,8 @@ pub(super) fn around(points: &[DVec3], mut ring: Vec<u32>, normal: DVec3) -> Vec
     ring
 }
 
-/// Convex hull of points in the plane, counter-clockwise, as indices; corners that jut out by no more than `width` are
-/// left out.
+/// Convex hull of points in the plane, counter-clockwise, as indices; corners that jut out by no more than
+/// `width` are left out.
 pub(super) fn hull(p: &[DVec2], width: f64) -> Vec<usize> {
     let mut order: Vec<usize> = (0..p.len()).collect();
     order.sort_by(|&i, &j| p[i].x.total_cmp(&p[j].x).then(p[i].y.total_cmp(&p[j].y)));
