@@ -48,12 +48,6 @@ fn by_hand((a, b, c): (u32, u32, i32)) -> (bool, bool, bool) {
 #[test]
 fn tiles_of_the_known_answers() {
     let at = profile(0.6, 8);
-    let t = std::time::Instant::now();
-    let _ = hands((7, 1, 3), &at);
-    println!("TIME 713 {:?}", t.elapsed());
-    let t = std::time::Instant::now();
-    let _ = hands((9, 8, 5), &at);
-    println!("TIME 985 {:?}", t.elapsed());
     assert_eq!(words((1, 1, 1), &at), (Handedness::Achiral, WarpIs::Both));
     assert_eq!(words((2, 2, 1), &at), (Handedness::Achiral, WarpIs::Both));
     assert!(matches!(words((3, 1, 1), &at), (Handedness::Left | Handedness::Right, WarpIs::Same)));
