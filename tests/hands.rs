@@ -173,29 +173,21 @@ fn odd_drafts(count: usize) -> Vec<Vec<String>> {
 
 #[test]
 fn odd_drafts_and_their_mirror_images_have_opposite_hands() {
-    let mut undecided = 0;
     for rows in odd_drafts(12) {
-        let here = of_weave(&drawn(&rows), &profile(0.6, 4));
         // Mirrored at y: the wefts in reverse, weft 0 staying in place.
         let turned: Vec<String> =
             (0..rows.len()).map(|j| rows[(rows.len() - j) % rows.len()].clone()).collect();
-        let there = of_weave(&drawn(&turned), &profile(0.6, 4));
-        let (Ok(here), Ok(there)) = (here, there) else {
-            println!("{rows:?}: tiles cannot be cut");
-            continue;
-        };
-        let expected = match here.tile {
+        let [here, there] = [&rows, &turned].map(|rows| {
+            of_weave(&drawn(rows), &profile(0.6, 4)).unwrap_or_else(|e| panic!("{rows:?}: {e}")).tile
+        });
+        let expected = match here {
             Some(Handedness::Left) => Some(Handedness::Right),
             Some(Handedness::Right) => Some(Handedness::Left),
             same => same,
         };
-        assert_eq!(there.tile, expected, "{rows:?}");
-        undecided += usize::from(here.tile == Some(Handedness::Undecided));
-        if here.tile == Some(Handedness::Undecided) {
-            println!("{rows:?}: {:?}", here.tiles[0].hand.why);
-        }
+        assert_eq!(there, expected, "{rows:?}");
+        assert_ne!(here, Some(Handedness::Undecided), "{rows:?}");
     }
-    println!("{undecided} of 12 undecided");
 }
 
 #[test]
@@ -209,7 +201,6 @@ fn prisms_and_own_points_have_hands_too() {
     let (tile, warp) = words((1, 1, 1), &lame);
     assert_ne!(tile, Handedness::Undecided);
     assert_ne!(warp, WarpIs::Undecided);
-    println!("lame plain: {tile:?} {warp:?}");
 }
 
 fn folder(name: &str) -> PathBuf {
@@ -228,15 +219,11 @@ fn meshes(name: &str, objs: &[&str]) -> (Vec<Handedness>, Handedness) {
         let at = format!("at = [1,0,0,{}, 0,1,0,0, 0,0,1,0]", 10 * k);
         toml += &format!("[[part]]\nid = \"p{k}\"\nmesh = \"{k}.obj\"\n{at}\n");
     }
-    toml += "[contact]\ntolerance = \"0.001 mm\"\n[size]\nunit = \"mm\"\n";
+    toml += "[contact]\ntolerance = \"0.000001 mm\"\n[size]\nunit = \"mm\"\n";
     let spec = parse(&toml, &folder.join("solids.toml"), Syntax::Toml).unwrap_or_else(|f| panic!("{f}"));
     let joined = join(&spec).unwrap_or_else(|f| panic!("{f}"));
     let hands = of_assembly(&spec, &joined).unwrap_or_else(|e| panic!("{e}"));
     fs::remove_dir_all(&folder).expect("removed");
-    println!(
-        "{name}: {:?}",
-        hands.assembly_evidence.as_ref().map(|e| (&e.why, &e.measure, e.evidence.isometries.len()))
-    );
     (hands.parts.iter().map(|p| p.hand).collect(), hands.assembly.expect("an assembly"))
 }
 
@@ -286,7 +273,6 @@ fn the_atlas_is_the_same_with_any_threads_and_after_a_stop() {
     let other = Ask { most: 3, ..small() };
     assert!(atlas::write(&other, &torn, |_| ()).is_err());
     assert_eq!(bytes(&one), bytes(&torn));
-    println!("{}", String::from_utf8_lossy(&bytes(&one)[1]));
     for folder in [one, many, torn] {
         fs::remove_dir_all(folder).expect("removed");
     }
@@ -294,7 +280,7 @@ fn the_atlas_is_the_same_with_any_threads_and_after_a_stop() {
 
 #[test]
 fn the_atlas_holds_the_known_answers() {
-    assert_eq!(atlas::weaves(4), [(1, 1, 1), (2, 1, 1), (2, 2, 1), (3, 1, 1)]);
+    assert_eq!(atlas::weaves(4), [(1, 1, 1), (2, 1, 1), (2, 2, 1), (2, 2, 2), (3, 1, 1)]);
     let least = |abc| atlas::row(abc, &Ask::new(8)).unwrap_or_else(|f| panic!("{f}")).minimal_repeat;
     assert_eq!([(1, 1, 1), (2, 2, 1)].map(least), [Some(2), Some(2)]);
 }

@@ -115,7 +115,9 @@ fn named(shape: &Shape, scale: Scale) -> (Handedness, Option<Measure>, Option<St
     let scalars = moment::pseudo_scalars(&shape.triangles, centroid);
     let part = |p: &PseudoScalar| if p.size > 0.0 { p.value / p.size } else { 0.0 };
     let Some(p) = scalars.iter().find(|p| part(p).abs() > round_off) else {
-        let why = "chiral, but every pseudo-scalar vanishes to round-off: the hand has no name".into();
+        let why = "chiral, but the error of the points could turn the sign of every pseudo-scalar, so the hand has no \
+                   name; for meshes a smaller tolerance may give it one"
+            .into();
         return (Handedness::Undecided, None, Some(why));
     };
     let hand = if p.value > 0.0 { Handedness::Right } else { Handedness::Left };
@@ -130,8 +132,8 @@ fn isometry_answer(found: &Found) -> IsometryAnswer {
     let rows = found.map.matrix3.transpose();
     IsometryAnswer {
         proper: found.is_proper(),
-        linear: [rows.x_axis, rows.y_axis, rows.z_axis].map(|r| DVec3::from(r).to_array()),
-        shift: DVec3::from(found.map.translation).to_array(),
+        linear: [rows.x_axis, rows.y_axis, rows.z_axis].map(|r| r.to_array()),
+        shift: found.map.translation.to_array(),
         residual: found.residual,
     }
 }
