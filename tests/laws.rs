@@ -294,7 +294,8 @@ fn locked_in_all_is_locked_in_translation() {
 fn a_mirror_is_a_mirror() {
     let (asm, _) = &cases().pop().expect("cases").1;
     let volume = |a: &Assembly| a.ids().map(|p| a.solid(p).volume()).sum::<f64>();
-    let image = mapped(&(asm.clone(), vec![]), DMat3::from_diagonal(v(1.0, -2.0, 1.0).signum()), DVec3::ZERO).0;
+    let image =
+        mapped(&(asm.clone(), vec![]), DMat3::from_diagonal(v(1.0, -2.0, 1.0).signum()), DVec3::ZERO).0;
     let (before, after) = (volume(asm), volume(&image));
     assert!(before > 0.0 && (before - after).abs() < 1e-9 * before, "{before} {after}");
 }

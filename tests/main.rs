@@ -2,6 +2,7 @@
 
 mod bad_input;
 mod certificates;
+mod cli;
 mod golden;
 mod known;
 mod laws;
