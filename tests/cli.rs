@@ -48,8 +48,9 @@ fn json(out: &Output) -> Value {
     serde_json::from_str(&text).unwrap_or_else(|e| panic!("not one object: {e}\n{text}\n{:?}", out.stderr))
 }
 
+/// A verb that is not there yet says so, and nothing else.
 fn not_built(out: &Output) -> bool {
-    text(&out.stderr).contains("not built yet")
+    code(out) == 2 && out.stdout.is_empty() && text(&out.stderr).contains("not built yet")
 }
 
 /// Verb and what follows it, the keys that its answer has at least, and its exit code.
@@ -96,7 +97,6 @@ fn every_verb_answers_with_its_keys_and_its_exit_code() {
         let out = row_ran(args, &at);
         if not_built(&out) {
             println!("not run: {args:?} is not built yet");
-            assert!(code(&out) == 2 && out.stdout.is_empty(), "{args:?} answers though it is not built");
             continue;
         }
         assert_eq!(code(&out), exit, "{args:?}\n{}", text(&out.stderr));

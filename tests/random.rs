@@ -98,7 +98,7 @@ fn random_held(dice: &mut Dice, count: usize) -> Vec<bool> {
 }
 
 fn random_voxels(dice: &mut Dice) -> Made {
-    let size = [0; 3].map(|_| 2 + dice.below(3) as i32);
+    let size = [2, 1, 1].map(|least| least + dice.below(3) as i32);
     let at = |k: usize| {
         let k = k as i32;
         [k % size[0], k / size[0] % size[1], k / size[0] / size[1]]

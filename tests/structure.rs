@@ -3,7 +3,7 @@
 //! Reads the sources as text: names in macros or behind `pub use` of another module are not followed.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// Each module of `src` and the modules that it may use. What stands in one line never uses its neighbours there.
 const FLOW: [&[&str]; 16] = [
@@ -61,7 +61,7 @@ fn files(folder: &str) -> BTreeMap<String, String> {
     found
 }
 
-fn name(path: &PathBuf) -> String {
+fn name(path: &Path) -> String {
     path.strip_prefix(root()).expect("below the root").display().to_string()
 }
 
