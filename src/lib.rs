@@ -7,7 +7,9 @@
 //! ```
 
 pub mod assembly;
+pub mod atlas;
 pub mod blocking;
+pub mod chirality;
 pub mod cli;
 pub mod contact;
 pub mod fabricate;

@@ -1,12 +1,15 @@
 //! One test binary, a file for each kind of promise. Slow tests are marked `#[ignore]`; `tests/run` runs them too.
 
+mod fab;
 mod bad_input;
+mod hands;
 mod certificates;
 mod cli;
 mod golden;
 mod known;
 mod laws;
 mod mesh;
+mod pages;
 mod plan;
 mod random;
 mod report;

@@ -4,8 +4,8 @@
 use glam::{DAffine3, DQuat, DVec3};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
-use weavelock::assembly::mesh::{MeshAssembly, MeshFaults, Place, Reading, assemble, read_mesh};
-use weavelock::assembly::{Assembly, Mobility, Part, PartIx};
+use weavelock::assembly::mesh::{MeshFaults, Place, Reading, read_mesh};
+use weavelock::assembly::{Assembly, Mobility, Part, PartIx, read};
 use weavelock::contact::mesh::{Kind, MeshContacts, Why, mesh_patches};
 use weavelock::locking;
 use weavelock::solid::{Facet, Solid};
@@ -17,10 +17,10 @@ fn root() -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR"))
 }
 
-fn spec_assembly(path: &Path) -> MeshAssembly {
+fn spec_assembly(path: &Path) -> Assembly {
     let spec = spec::read(path).unwrap_or_else(|e| panic!("{e}"));
     let Subject::Meshes(meshes) = &spec.subject else { panic!("{}: no meshes", path.display()) };
-    assemble(&spec.name, meshes).unwrap_or_else(|e| panic!("{e}"))
+    read::assembly(&spec, meshes).unwrap_or_else(|e| panic!("{e}")).0
 }
 
 fn contacts(assembly: &Assembly) -> MeshContacts {
@@ -59,20 +59,20 @@ fn fixtures() -> BTreeMap<String, PathBuf> {
 #[test]
 fn every_fixture_has_its_verdict_and_a_twin_that_says_otherwise() {
     let all = fixtures();
-    assert!(all.len() >= 20, "only {} fixtures", all.len());
+    assert!(all.len() >= 27, "only {} fixtures", all.len());
     let read = |p: &Path| expected(&std::fs::read_to_string(p).unwrap());
     for (name, path) in &all {
         let want = read(path);
         let twin = read(all.get(&want.twin).unwrap_or_else(|| panic!("{name}: no twin {}", want.twin)));
         assert_ne!(want.verdict, twin.verdict, "{name} and its twin say the same");
-        assert_eq!(verdict(&spec_assembly(path).assembly, None), want.verdict, "{name}");
+        assert_eq!(verdict(&spec_assembly(path), None), want.verdict, "{name}");
     }
 }
 
 #[test]
 fn what_touches_in_the_fixtures() {
     let kinds = |name: &str| {
-        let c = contacts(&spec_assembly(&fixtures()[name]).assembly);
+        let c = contacts(&spec_assembly(&fixtures()[name]));
         let of = |k: Kind| c.facts.iter().filter(|f| f.kind == k).count();
         ([of(Kind::Face), of(Kind::Edge), of(Kind::Point)], c.assumed.len())
     };
@@ -86,7 +86,7 @@ fn what_touches_in_the_fixtures() {
 
 #[test]
 fn crossing_edges_push_along_their_common_perpendicular() {
-    let a = spec_assembly(&fixtures()["knife-between-knives"]).assembly;
+    let a = spec_assembly(&fixtures()["knife-between-knives"]);
     let c = contacts(&a);
     let got: Vec<_> = c.patches.iter().map(|p| (p.a.0, p.b.0, p.normal, p.corners.clone())).collect();
     let z = |h: f64| vec![DVec3::new(0.0, 0.0, h)];
@@ -206,7 +206,7 @@ fn turning_mirroring_renumbering_and_distance_change_nothing() {
     );
     let far = DAffine3::from_translation(DVec3::new(1e6, -1e6, 2e6));
     for (name, path) in fixtures() {
-        let a = spec_assembly(&path).assembly;
+        let a = spec_assembly(&path);
         let (area, few, want) = (touching_area(&a), small(&a), verdict(&a, None));
         let variants =
             [("turned", moved(&a, turn)), ("far", moved(&a, far)), ("both", moved(&a, far * turn))];
@@ -221,12 +221,63 @@ fn turning_mirroring_renumbering_and_distance_change_nothing() {
 
 #[test]
 fn the_same_bytes_with_one_thread_and_with_many() {
-    let a = spec_assembly(&fixtures()["panel-in-frame"]).assembly;
+    let a = spec_assembly(&fixtures()["panel-in-frame"]);
     let with = |n: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(n).build().unwrap();
         pool.install(|| format!("{:?}", contacts(&a)))
     };
     assert_eq!(with(1), with(5));
+}
+
+// --- bricks dropped on each other at random, against another program's distance ---
+
+/// The distance between brick `a` and brick `b`, posed, as parry finds it.
+fn parry_distance(half: [DVec3; 2], pose: [DAffine3; 2]) -> f64 {
+    use parry3d_f64::{math::Pose, query, shape::Cuboid};
+    let at = |m: &DAffine3| Pose::from_parts(m.translation, DQuat::from_mat3(&m.matrix3));
+    let [a, b] = half.map(Cuboid::new);
+    query::distance(&at(&pose[0]), &a, &at(&pose[1]), &b).unwrap().distance
+}
+
+fn share(seed: &mut u64) -> f64 {
+    (noise(seed) % 1_000_000) as f64 / 1e6
+}
+
+fn direction(seed: &mut u64) -> DVec3 {
+    let v = DVec3::new(share(seed), share(seed), share(seed)) * 2.0 - 1.0;
+    if v.length() > 0.1 && v.length() < 1.0 { v.normalize() } else { direction(seed) }
+}
+
+#[test]
+fn the_one_row_of_two_bricks_that_just_touch_is_the_way_apart() {
+    let (mut seed, mut edges, mut points) = (0x1234_5678_9abc_def1, 0, 0);
+    for round in 0..300 {
+        let half = [(); 2].map(|_| DVec3::new(share(&mut seed), share(&mut seed), share(&mut seed)) + 0.5);
+        let turn = [(); 2].map(|_| DQuat::from_axis_angle(direction(&mut seed), 6.0 * share(&mut seed)));
+        let way = direction(&mut seed);
+        let posed = |shift: DVec3| {
+            [DAffine3::from_quat(turn[0]), DAffine3::from_rotation_translation(turn[1], shift)]
+        };
+        // From clear to touching by halving: the gap left is far below the tolerance.
+        let (mut near, mut far) = (0.0, 10.0);
+        while far - near > 1e-9 {
+            let middle = (near + far) / 2.0;
+            if parry_distance(half, posed(way * middle)) > 0.0 { far = middle } else { near = middle }
+        }
+        let pose = posed(way * far);
+        let parts = [0, 1].map(|k| (["a", "b"][k].to_owned(), brick(-half[k], half[k]), pose[k]));
+        // A tolerance near the gap that is left: within a wider one a second corner may touch as well.
+        let c = mesh_patches(&placed(parts.to_vec(), &[]), 1e-6).unwrap_or_else(|e| panic!("{e}"));
+        assert_eq!(c.patches.len() + c.assumed.len(), 1, "round {round}: {c:?}");
+        let n = c.patches[0].normal;
+        let apart = parry_distance(half, posed(way * far + 0.01 * n));
+        assert!((apart - 0.01).abs() < 1e-7, "round {round}: {apart} along {n}");
+        let local = pose[1].inverse().transform_point3(c.patches[0].corners[0]);
+        let on_rim = (local.abs() - half[1]).abs().to_array().iter().filter(|d| **d < 1e-6).count();
+        if on_rim == 2 { edges += 1 } else { points += 1 }
+    }
+    println!("{edges} edges crossed, {points} corners on faces");
+    assert!(edges > 50 && points > 50);
 }
 
 // --- overlaps ---
@@ -284,12 +335,53 @@ fn less_than_the_tolerance_is_contact_and_more_is_air() {
     }
 }
 
+// --- convex cells ---
+
+#[test]
+fn cells_fill_every_fixture_and_lie_inside() {
+    for (name, path) in fixtures() {
+        for (k, solid) in spec_assembly(&path).solids.iter().enumerate() {
+            assert!(!solid.cells.is_empty(), "{name}: solid {k} has no cells");
+            let bounds = |p: &dyn Fn(DVec3) -> f64| {
+                solid.vertices.iter().map(|&v| p(v)).fold(f64::NEG_INFINITY, f64::max)
+            };
+            for cell in &solid.cells {
+                for &(n, d) in &cell.planes {
+                    let far = cell.vertices.iter().map(|v| n.dot(*v) - d).fold(f64::NEG_INFINITY, f64::max);
+                    assert!(far.abs() < 1e-6, "{name}: a plane stands {far} off its cell");
+                }
+                for axis in [DVec3::X, DVec3::Y, DVec3::Z] {
+                    let reach = cell.vertices.iter().map(|v| v.dot(axis)).fold(f64::NEG_INFINITY, f64::max);
+                    assert!(reach <= bounds(&|v| v.dot(axis)) + 1e-6, "{name}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn plans_are_found_for_what_slides_out_and_none_for_what_is_locked() {
+    for (name, steps) in
+        [("dovetail-open", 1), ("panel-without-rail", 1), ("taper-with-draft", 1), ("dovetail-stopped", 0)]
+    {
+        let a = spec_assembly(&fixtures()[name]);
+        let plan = weavelock::sequence::plan(&a, &contacts(&a).patches, |_| None::<()>)
+            .unwrap_or_else(|e| panic!("{name}: {e}"));
+        assert_eq!(plan.steps.len(), steps, "{name}: {:?}", plan.outcome);
+        let checked = weavelock::verify::plan::check(&a, &plan);
+        println!("{name}: {:?} {} steps; check {checked:?}", plan.outcome, plan.steps.len());
+    }
+}
+
 // --- broken files ---
 
 #[test]
 fn broken_meshes_are_refused_with_file_place_and_hint() {
     let dir = root().join("fixtures/meshes");
-    let wanted: [(&str, &str, fn(&Place) -> bool); 12] = [
+    type Wanted = (&'static str, &'static str, fn(&Place) -> bool);
+    let wanted: [Wanted; 14] = [
+        ("broken-crosses-itself.obj", "another face of the same shell", |p| matches!(p, Place::Edge(..))),
+        ("broken-package.3mf", "no 3MF package", |p| *p == Place::File),
         ("broken-open.obj", "open", |p| matches!(p, Place::Edge(..))),
         ("broken-flipped-face.obj", "one faces inward", |p| matches!(p, Place::Edge(..))),
         ("broken-inside-out.obj", "inside out", |p| matches!(p, Place::Edge(..))),
@@ -316,6 +408,58 @@ fn broken_meshes_are_refused_with_file_place_and_hint() {
     }
 }
 
+/// What numerals and lines are made of.
+const GLYPHS: &[u8] = b"0123456789.-e /\n";
+
+/// A small generator of its own (xorshift): the same bytes every run.
+fn noise(seed: &mut u64) -> usize {
+    *seed ^= *seed << 13;
+    *seed ^= *seed >> 7;
+    *seed ^= *seed << 17;
+    *seed as usize
+}
+
+#[test]
+fn no_damage_to_a_file_makes_a_reader_panic_and_what_is_taken_is_closed() {
+    let dir = root().join("fixtures/assemblies/parts");
+    let work = std::env::temp_dir().join(format!("weavelock-damaged-{}", std::process::id()));
+    std::fs::create_dir_all(&work).unwrap();
+    let (mut seed, mut refused, mut taken) = (0x9e37_79b9_7f4a_7c15, 0, 0);
+    for name in ["dovetail-tail.obj", "jack.stl", "left-stop.stl", "block.3mf", "panel-strips.obj"] {
+        let whole = std::fs::read(dir.join(name)).unwrap();
+        for _ in 0..300 {
+            let mut bytes = whole.clone();
+            for _ in 0..1 + noise(&mut seed) % 4 {
+                let at = noise(&mut seed) % bytes.len();
+                match noise(&mut seed) % 4 {
+                    0 => bytes.truncate(at.max(1)),
+                    1 => bytes[at] = noise(&mut seed) as u8,
+                    2 => bytes[at] = GLYPHS[noise(&mut seed) % GLYPHS.len()],
+                    _ => drop(bytes.drain(at..(at + 7).min(bytes.len()))),
+                }
+                if bytes.is_empty() {
+                    break;
+                }
+            }
+            let file = work.join(name);
+            std::fs::write(&file, &bytes).unwrap();
+            match mesh(&file) {
+                Ok(solid) => {
+                    assert!(solid.volume() > 0.0, "{name}");
+                    taken += 1;
+                }
+                Err(faults) => {
+                    assert!(!faults.0.is_empty());
+                    refused += 1;
+                }
+            }
+        }
+    }
+    std::fs::remove_dir_all(&work).unwrap();
+    println!("{refused} refused, {taken} taken");
+    assert!(refused > 300 && taken > 30, "{refused} {taken}");
+}
+
 #[test]
 fn odd_but_sound_meshes_are_taken_with_a_remark() {
     let dir = root().join("fixtures/meshes");
@@ -333,6 +477,6 @@ fn odd_but_sound_meshes_are_taken_with_a_remark() {
 
 #[test]
 fn every_listed_reason_for_no_row_is_a_different_word() {
-    let a = spec_assembly(&fixtures()["bricks-corner-to-corner"]).assembly;
+    let a = spec_assembly(&fixtures()["bricks-corner-to-corner"]);
     assert_eq!(contacts(&a).assumed[0].why, Why::ManyNormals);
 }

@@ -546,6 +546,25 @@ fn sweep_and_program_agree() {
     assert!(free > 500 && hit > 500, "{free} {hit}");
 }
 
+#[test]
+fn a_part_goes_as_far_as_the_first_thing_in_its_way() {
+    use weavelock::assembly::PartIx;
+    use weavelock::blocking::reach::{Reach, reach};
+    use weavelock::blocking::{Touch, shadow::Shapes, shadow::View};
+    let (asm, _) = assembly(vec![
+        ("block", vec![cuboid([0., 0., 0.], [1., 1., 1.])]),
+        ("gate", vec![cuboid([0.99, 0., 7.], [2., 1., 8.]), cuboid([0.99, 0., 5.], [2., 1., 6.])]),
+    ]);
+    for angle in [0.0, 0.7, 2.2] {
+        let (asm, _) = turned(&asm, angle);
+        let (shapes, touch) = (Shapes::of(&asm), Touch::of(&asm));
+        let d = asm.parts[0].pose.transform_vector3(DVec3::Z);
+        let far = |d: DVec3| reach(&View::new(&shapes, d), PartIx(0), PartIx(1), touch);
+        assert!(matches!(far(d), Reach::Until(t) if (t - 4.0).abs() < 1e-4), "{:?}", far(d));
+        assert_eq!(far(-d), Reach::Free);
+    }
+}
+
 /// The cell mirrored in the plane of one of its faces: both touch on the whole face.
 fn mirrored(c: &Cell, face: usize) -> Cell {
     let (n, d) = c.planes[face];
@@ -646,6 +665,42 @@ mod woven {
         let p = planned(&fine, &all(&fine));
         assert_eq!(p.outcome, Outcome::NeedsFlexible, "{p:#?}");
         assert_eq!(p.stuck[0].parts, ["weft-0", "weft-1", "warp-1", "warp-2", "warp-3"]);
+    }
+
+    /// A fiftieth of the pitch is enough to lift every twill tile over the lips, one by one; with half of that
+    /// some must go together first.
+    #[test]
+    fn twill_unit_tiles_with_clearance_come_apart_one_by_one() {
+        use weavelock::sequence::clearance::with_clearance;
+        let tight = pieces([2, 2, 1], 4, 6, &[0, 1, -2, -1], &[1, -2, -1, 0]);
+        let at = |clearance: f64| {
+            let loose =
+                with_clearance(&tight.assembly, &tight.patches, clearance).expect("something is left");
+            let p = plan(&loose, &[], |_| None::<()>).expect("sane parts");
+            assert!(matches!(check(&loose, &p), Checked::Valid { .. }), "{:?}", check(&loose, &p));
+            p
+        };
+        let p = at(0.025);
+        assert_eq!((p.outcome, p.steps.len()), (Outcome::Assembled, 7));
+        assert!(p.steps.iter().all(|s| s.parts.len() == 1 && s.clear > 0.0), "{p:#?}");
+        let p = at(0.01);
+        assert_eq!(p.outcome, Outcome::Assembled);
+        assert!(p.steps[0].parts.len() > 1, "{p:#?}");
+    }
+
+    #[test]
+    fn no_clearance_changes_nothing_and_too_much_leaves_nothing() {
+        use weavelock::sequence::clearance::{NoClearance, with_clearance};
+        let joined = swatch([1, 1, 1], 2, "window", 6);
+        let (asm, patches) = (&joined.assembly, &joined.patches);
+        let same = with_clearance(asm, patches, 0.0).expect("all is left");
+        let p = plan(&same, patches, |_| None::<()>).expect("sane parts");
+        assert!(matches!(check(&same, &p), Checked::Valid { .. }), "{:?}", check(&same, &p));
+        assert_eq!((p.outcome, p.stuck[0].parts.len()), (Outcome::NotFound, 4));
+        for wrong in [-0.1, f64::NAN, f64::INFINITY] {
+            assert!(matches!(with_clearance(asm, patches, wrong), Err(NoClearance::NoLength(_))));
+        }
+        assert!(matches!(with_clearance(asm, patches, 5.0), Err(NoClearance::NothingLeft(_))));
     }
 
     #[test]

@@ -1,40 +1,63 @@
-//! Takes written parts; asks the programs of others about each, and about each pair of neighbours.
+//! Takes written parts; asks the programs of others about each, and about each pair that comes near.
 
 use crate::check::openscad::OpenScad;
 use crate::check::{Check, Outcome, Programs, admesh, check, slicer};
 use crate::make::Piece;
-use crate::report::{PairCheck, Report};
+use crate::report::{PairCheck, PartReport, Report};
 use glam::DVec3;
 use rayon::prelude::*;
+use std::collections::BTreeMap;
 use std::path::Path;
 
-pub(crate) fn check_all(report: &mut Report, pieces: &[Piece], programs: &Programs, folder: &Path) {
-    let openscad =
-        OpenScad::new(&programs.openscad, folder).map_err(|e| format!("no room for its files: {e}"));
+type Scad<'a> = Result<&'a OpenScad, Outcome>;
+
+pub(crate) fn check_all(report: &mut Report, pieces: &[Piece], programs: &Programs) {
+    let scratch = std::env::temp_dir();
+    let openscad = OpenScad::new(&programs.openscad, &scratch);
+    let scad: Scad =
+        openscad.as_ref().map_err(|e| Outcome::NotRun(format!("no room in {}: {e}", scratch.display())));
     let names = (slicer::name(&programs.slicer), admesh::name(&programs.admesh));
-    let high = |p: usize| pieces[p].made.as_ref().map_or(DVec3::ZERO, |m| m.mesh.bounds().1);
-    let of_part = |(p, part): (usize, &crate::report::PartReport)| -> Vec<Check> {
+    let of_part = |(part, piece): (&PartReport, &Piece)| -> Vec<Check> {
         let Some(file) = part.file.as_ref().map(Path::new) else { return vec![] };
         vec![
-            match &openscad {
-                Ok(scad) => scad.volume(file, part.expected_volume_mm3, high(p)),
-                Err(why) => check(&programs.openscad, "volume", Err(Outcome::NotRun(why.clone()))),
-            },
+            volume(&scad, programs, file, part, high(piece)),
             slicer::part(&programs.slicer, &names.0, file),
             admesh::part(&programs.admesh, &names.1, file),
         ]
     };
-    let checks: Vec<Vec<Check>> = report.parts.par_iter().enumerate().map(of_part).collect();
-    let find = |id: &str| report.parts.iter().position(|p| p.id == id);
-    let of_pair = |gap: &crate::gap::Gap| {
-        let (a, b) = (find(&gap.a)?, find(&gap.b)?);
-        let (fa, fb) = (report.parts[a].file.as_ref()?, report.parts[b].file.as_ref()?);
-        let check = match &openscad {
-            Ok(scad) => scad.apart(Path::new(fa), Path::new(fb), high(a).max(high(b))),
-            Err(why) => check(&programs.openscad, "shares no volume", Err(Outcome::NotRun(why.clone()))),
-        };
-        Some(PairCheck { a: gap.a.clone(), b: gap.b.clone(), check })
-    };
-    report.pair_checks = report.gaps.par_iter().filter_map(of_pair).collect();
+    let checks: Vec<Vec<Check>> = report.parts.par_iter().zip(pieces).map(of_part).collect();
+    report.pair_checks =
+        pairs(report, &scad, programs, pieces.iter().map(high).fold(DVec3::ZERO, DVec3::max));
     report.parts.iter_mut().zip(checks).for_each(|(part, checks)| part.checks = checks);
+}
+
+fn high(piece: &Piece) -> DVec3 {
+    piece.made.as_ref().map_or(DVec3::ZERO, |m| m.mesh.bounds().1)
+}
+
+fn volume(scad: &Scad, programs: &Programs, file: &Path, part: &PartReport, high: DVec3) -> Check {
+    match scad {
+        Ok(scad) => scad.volume(file, part.expected_volume_mm3, high),
+        Err(why) => check(&programs.openscad, "volume", Err(why.clone())),
+    }
+}
+
+/// Every pair whose gap was measured and of which both parts are written.
+fn pairs(report: &Report, scad: &Scad, programs: &Programs, high: DVec3) -> Vec<PairCheck> {
+    let files: BTreeMap<&str, &Path> =
+        report.parts.iter().filter_map(|p| Some((p.id.as_str(), Path::new(p.file.as_ref()?)))).collect();
+    let wanted: Vec<_> =
+        report.gaps.iter().filter_map(|g| Some((g, (*files.get(&*g.a)?, *files.get(&*g.b)?)))).collect();
+    let paths: Vec<(&Path, &Path)> = wanted.iter().map(|w| w.1).collect();
+    let checks = match scad {
+        Ok(scad) => scad.apart(&paths, high),
+        Err(why) => {
+            paths.iter().map(|_| check(&programs.openscad, "shares no volume", Err(why.clone()))).collect()
+        }
+    };
+    wanted
+        .iter()
+        .zip(checks)
+        .map(|((g, _), check)| PairCheck { a: g.a.clone(), b: g.b.clone(), check })
+        .collect()
 }

@@ -10,6 +10,8 @@ use crate::report::{Finding, Place, Report, Severity};
 use glam::DVec3;
 
 const SMALLER: &str = "take a smaller clearance, a larger pitch, or a shape with thicker walls there";
+const CROSSING: &str =
+    "take a smaller clearance, and look whether the solid that came in crosses itself there already";
 const OURS: &str = "this is a fault of the program: please report it with the input";
 
 fn error(id: &str, at: Vec<DVec3>, what: String, remedy: &str) -> Finding {
@@ -40,7 +42,7 @@ pub fn of_mesh(id: &str, master: &Mesh, scale: &Scale) -> Vec<Finding> {
     if let Some(c) = crossings(master).first() {
         let what =
             "the clearance makes the surface cross itself; nothing is written for the part".to_string();
-        found.push(error(id, vec![scale.down(c.at)], what, SMALLER));
+        found.push(error(id, vec![scale.down(c.at)], what, CROSSING));
     }
     let topology = master.topology();
     if topology.bodies != 1 {
@@ -76,7 +78,8 @@ pub fn collect(report: &mut Report, scale: &Scale) {
     });
     report.findings.extend(found);
     report.findings.sort_by_key(|f| std::cmp::Reverse(f.severity));
-    report.findings.dedup();
+    let mut seen = std::collections::BTreeSet::new();
+    report.findings.retain(|f| seen.insert((f.place.parts.clone(), f.what.clone())));
 }
 
 fn of_gap(gap: &Gap) -> Option<Finding> {

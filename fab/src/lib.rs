@@ -1,9 +1,17 @@
 //! Takes closed solids in mm, face roles and a process; gives parts with clearance and allowance built in, their files,
 //! what was measured on them, and findings. It knows nothing of weaves.
+//!
+//! ```text
+//! shape -> offset { body -> weld -> split -> settle -> relief } -> ledger (scale) -> files -> gap -> check -> report
+//! ```
+//!
+//! `make` goes through all of it. Not promised: molds, and walls against the least wall of a process; both are said in
+//! the report.
 
 pub mod bvh;
 pub mod check;
 pub mod cross;
+mod ears;
 mod external;
 pub mod files;
 mod findings;

@@ -79,6 +79,7 @@ pub fn make(job: &Job, recipe: &Recipe, folder: &Path) -> Result<Report, FabErro
     if !faults.is_empty() {
         return Err(FabError::Job(faults));
     }
+    let job = &job.planar();
     let scale = Scale::of(&recipe.process, recipe.datum);
     let snap = stl::snap_distance(largest_coordinate(job, &scale)) / scale.factor;
     let mut pieces = pieces(job, &aim(recipe.process.clearance.value, snap), &scale);
@@ -93,7 +94,7 @@ pub fn make(job: &Job, recipe: &Recipe, folder: &Path) -> Result<Report, FabErro
     batch.commit()?;
     let mut report = report(job, recipe, &scale, &pieces, gaps, folder);
     if let Some(programs) = &recipe.programs {
-        external::check_all(&mut report, &pieces, programs, folder);
+        external::check_all(&mut report, &pieces, programs);
     }
     findings::collect(&mut report, &scale);
     Ok(report)

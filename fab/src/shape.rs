@@ -2,6 +2,7 @@
 //!
 //! Not promised: that neighbours really touch, or that a solid does not cross itself (the made one is tested for it).
 
+use crate::ears::triangulate;
 use glam::{DAffine3, DVec3};
 use std::collections::BTreeMap;
 use std::fmt;
@@ -13,7 +14,7 @@ pub struct Shape {
     pub facets: Vec<Facet>,
 }
 
-/// A planar convex polygon, counter-clockwise seen from outside.
+/// A simple polygon, counter-clockwise seen from outside; one that is not planar is cut into triangles.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Facet {
     /// Indices into [`Shape::vertices`].
@@ -72,7 +73,7 @@ const LARGEST_COORDINATE: f64 = 1e6;
 /// products in f64 (1e-15), far below any angle that matters in a workshop.
 const UNIT_ROUND_OFF: f64 = 1e-9;
 
-/// How far a corner may stand off its facet's plane, relative to the solid's size. Voronoi vertices are solved from
+/// How far a corner of a planar facet may stand off its plane, relative to the solid's size. Voronoi vertices are solved from
 /// planes and carry a conditioning of up to about 1e6 over f64's 1e-16.
 pub const PLANE_ROUND_OFF: f64 = 1e-9;
 
@@ -119,6 +120,31 @@ impl Shape {
             / 2.0
     }
 
+    /// The same solid with facets that are not planar cut into triangles, and for each new facet the old one.
+    pub fn planar(&self) -> (Shape, Vec<usize>) {
+        let (mut facets, mut from) = (vec![], vec![]);
+        for (k, f) in self.facets.iter().enumerate() {
+            let parts = if self.is_planar(f) { vec![f.clone()] } else { self.cut(f) };
+            from.extend(parts.iter().map(|_| k));
+            facets.extend(parts);
+        }
+        (Shape { vertices: self.vertices.clone(), facets }, from)
+    }
+
+    fn is_planar(&self, f: &Facet) -> bool {
+        let heights = f.corners.iter().map(|&c| f.normal.dot(self.vertices[c as usize]));
+        let (lo, hi) = heights.fold((f64::MAX, f64::MIN), |(l, h), x| (l.min(x), h.max(x)));
+        hi - lo <= PLANE_ROUND_OFF * self.size()
+    }
+
+    fn cut(&self, f: &Facet) -> Vec<Facet> {
+        let facet = |t: [u32; 3]| {
+            let [a, b, c] = t.map(|v| self.vertices[v as usize]);
+            Facet { corners: t.to_vec(), normal: (b - a).cross(c - a).try_normalize().unwrap_or(f.normal) }
+        };
+        triangulate(&self.vertices, f).into_iter().map(facet).collect()
+    }
+
     fn faults(&self, at: &str) -> Vec<Fault> {
         let fault = |what: String| Fault { place: at.to_string(), what };
         if self.facets.len() < 4 {
@@ -145,13 +171,10 @@ impl Shape {
             format!("names vertex {c} of {}", self.vertices.len())
         } else if !normal.is_finite() || (normal.length() - 1.0).abs() > UNIT_ROUND_OFF {
             format!("has a normal of length {}", normal.length())
+        } else if self.facet_area(f) < -PLANE_ROUND_OFF * self.size().powi(2) {
+            "has its corners clockwise, seen against its normal".to_string()
         } else {
-            let heights = corners.iter().map(|&c| normal.dot(self.vertices[c as usize]));
-            let (lo, hi) = heights.fold((f64::MAX, f64::MIN), |(l, h), x| (l.min(x), h.max(x)));
-            if hi - lo <= PLANE_ROUND_OFF * self.size() {
-                return None;
-            }
-            format!("is not planar: its corners differ by {:.3e} mm along its normal", hi - lo)
+            return None;
         };
         Some(Fault { place: format!("{at}, facet {f}"), what })
     }
@@ -222,6 +245,17 @@ impl Job {
             }
             _ => None,
         })
+    }
+
+    /// The same job with facets that are not planar cut into triangles, each with the role of its facet.
+    pub fn planar(&self) -> Job {
+        let cut: Vec<(Shape, Vec<usize>)> = self.shapes.iter().map(Shape::planar).collect();
+        let part = |p: &PlacedPart| {
+            let roles = cut[p.shape].1.iter().map(|&f| p.roles[f]).collect();
+            PlacedPart { roles, ..p.clone() }
+        };
+        let parts = self.parts.iter().map(part).collect();
+        Job { name: self.name.clone(), shapes: cut.iter().map(|c| c.0.clone()).collect(), parts }
     }
 
     /// Pairs of parts with a common contact facet, each once, in order.

@@ -44,14 +44,14 @@ fn across(kind: Kind, wefts: u32, warps: u32) -> u32 {
 }
 
 /// Each strand as a run of pieces of `repeat` unit tiles. Runs start at cuts (`start` + phase + whole tiles); a run has
-/// as many pieces as come nearest to the window's length, at least one, and lies with its middle nearest to the
-/// window's; in a tie the smaller start.
+/// as many whole pieces as the window is long, at least one, and lies with its middle nearest to the window's; in a
+/// tie the smaller start.
 pub fn tiles(weave: &Weave, swatch: Swatch) -> Vec<Piece> {
     let run = |strand: Strand| {
         let n = if strand.kind == Kind::Weft { weave.tile.0 } else { weave.tile.1 } as i32;
         let window = across(strand.kind, swatch.wefts, swatch.warps) as i32;
         let length = n * swatch.repeat as i32;
-        let count = ((window + length / 2) / length).max(1);
+        let count = (window / length).max(1);
         let first = first_cut(weave, strand) + swatch.phase;
         let start = nearest(first, n, (window - count * length, 2));
         (0..count).map(move |k| Piece { strand, from: start + k * length, to: start + (k + 1) * length })
@@ -60,7 +60,7 @@ pub fn tiles(weave: &Weave, swatch: Swatch) -> Vec<Piece> {
 }
 
 /// The first crossing at or after 0 where the strand comes up; 0 where it never does.
-fn first_cut(weave: &Weave, strand: Strand) -> i32 {
+pub fn first_cut(weave: &Weave, strand: Strand) -> i32 {
     let period = weave.draft.period(strand.kind) as i32;
     let rises = |&c: &i32| weave.draft.is_over(strand, c) && !weave.draft.is_over(strand, c - 1);
     (0..period).find(rises).unwrap_or(0)

@@ -214,3 +214,49 @@ fn inside_face(units: &[DVec3], face: &[usize]) -> Option<DVec3> {
     let inside = w.iter().chain([&first]).all(|&x| x > LEAST_WEIGHT);
     inside.then(|| o + edges.iter().zip(&w).map(|(&e, &x)| e * x).sum::<DVec3>())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::DQuat;
+
+    /// Lines and rays of the polar cone, in several attitudes.
+    fn shape(vectors: &[DVec3]) -> (usize, usize) {
+        let turned = |k: usize| {
+            let by = DQuat::from_scaled_axis(DVec3::new(0.3, -1.1, 0.7) * k as f64);
+            let cone = polar(vectors.iter().map(|&v| by * v * (1.0 + k as f64)));
+            let all =
+                cone.lines.iter().flat_map(|&l| [l, -l]).chain(cone.rays.iter().copied()).chain(cone.middle);
+            for d in all {
+                assert!(vectors.iter().all(|&v| (by * v).dot(d) <= SAME_ANGLE), "{cone:?}");
+            }
+            (cone.lines.len(), cone.rays.len())
+        };
+        let shapes: Vec<_> = (0..5).map(turned).collect();
+        assert!(shapes.windows(2).all(|w| w[0] == w[1]), "{shapes:?}");
+        shapes[0]
+    }
+
+    #[test]
+    fn every_kind_of_cone() {
+        let [x, y, z] = DVec3::AXES;
+        let kinds: [(&[DVec3], (usize, usize)); 13] = [
+            (&[], (3, 0)),
+            (&[x], (2, 1)),
+            (&[x, y], (1, 2)),
+            (&[x, -x], (2, 0)),
+            (&[x, y, z], (0, 3)),
+            (&[x, -x, y], (1, 1)),
+            (&[x, -x, y, -y], (1, 0)),
+            (&[x, -x, y, z], (0, 2)),
+            (&[x, -x, y, -y, z], (0, 1)),
+            (&[x, -x, y, -y, z, -z], (0, 0)),
+            (&[x, y, -x - y], (1, 0)),
+            (&[x, y, z, -x - y - z], (0, 0)),
+            (&[x + z, y + z, z - x, z - y, z], (0, 4)),
+        ];
+        for (vectors, expected) in kinds {
+            assert_eq!(shape(vectors), expected, "{vectors:?}");
+        }
+    }
+}

@@ -12,6 +12,7 @@ use glam::DVec3;
 use petgraph::Direction;
 use petgraph::algo::tarjan_scc;
 use petgraph::graph::{DiGraph, NodeIndex};
+use rayon::prelude::*;
 use std::collections::BTreeMap;
 
 /// Why one part stops another.
@@ -34,24 +35,29 @@ fn nodes(parts: &[PartIx]) -> (Dbg, BTreeMap<PartIx, NodeIndex>) {
     (graph, at)
 }
 
+/// The patches of each pair of touching parts, by index.
+pub type Pairs = BTreeMap<(PartIx, PartIx), Vec<usize>>;
+
+pub fn pairs(patches: &[Patch]) -> Pairs {
+    let mut pairs = Pairs::new();
+    for (k, p) in patches.iter().enumerate() {
+        pairs.entry((p.a, p.b)).or_default().push(k);
+    }
+    pairs
+}
+
 /// Arcs where a patch opposes the very start of a motion along the unit direction `d`: one for each such pair, with the
 /// patch that opposes it most.
-pub fn infinitesimal(parts: &[PartIx], patches: &[Patch], d: DVec3) -> Dbg {
+pub fn infinitesimal(parts: &[PartIx], patches: &[Patch], pairs: &Pairs, d: DVec3) -> Dbg {
     let (mut graph, at) = nodes(parts);
-    let mut most: BTreeMap<(NodeIndex, NodeIndex), (f64, usize)> = BTreeMap::new();
-    for (k, patch) in patches.iter().enumerate() {
-        let push = patch.normal.dot(d);
-        if let (Some(&a), Some(&b)) = (at.get(&patch.a), at.get(&patch.b)) {
-            let arc = if push > 0.0 { (a, b) } else { (b, a) };
-            let best = most.entry(arc).or_insert((SAME_ANGLE, k));
-            if push.abs() > best.0 {
-                *best = (push.abs(), k);
+    for ((a, b), of) in pairs {
+        let (Some(&a), Some(&b)) = (at.get(a), at.get(b)) else { continue };
+        for (from, to, sign) in [(a, b, 1.0), (b, a, -1.0)] {
+            let push = |k: usize| sign * patches[k].normal.dot(d);
+            let most = of.iter().copied().max_by(|&k, &l| push(k).total_cmp(&push(l)));
+            if let Some(k) = most.filter(|&k| push(k) > SAME_ANGLE) {
+                graph.add_edge(from, to, Witness::Patch(k));
             }
-        }
-    }
-    for ((a, b), (push, k)) in most {
-        if push > SAME_ANGLE {
-            graph.add_edge(a, b, Witness::Patch(k));
         }
     }
     graph
@@ -59,15 +65,36 @@ pub fn infinitesimal(parts: &[PartIx], patches: &[Patch], d: DVec3) -> Dbg {
 
 /// Arcs where a part, moved along the view's direction to infinity, meets the interior of another.
 pub fn finite(view: &View, parts: &[PartIx], touch: Touch) -> Dbg {
-    let (mut graph, at) = nodes(parts);
-    for &i in parts {
-        for &j in parts.iter().filter(|&&j| j != i) {
-            if let Some(meeting) = meets(view, i, j, touch) {
-                graph.add_edge(at[&i], at[&j], Witness::Cells(meeting));
-            }
-        }
-    }
+    let mut graph = nodes(parts).0;
+    stop_later(&mut graph, view, touch, |_, _| true);
     graph
+}
+
+/// Adds the finite arcs between those nodes that `ask` names.
+pub fn stop_later(
+    graph: &mut Dbg,
+    view: &View,
+    touch: Touch,
+    ask: impl Fn(NodeIndex, NodeIndex) -> bool + Sync,
+) {
+    let nodes: Vec<NodeIndex> = graph.node_indices().collect();
+    let stopped = |i: NodeIndex| -> Vec<(NodeIndex, NodeIndex, Meeting)> {
+        let others = nodes.iter().filter(|&&j| j != i && ask(i, j));
+        others.filter_map(|&j| meets(view, graph[i], graph[j], touch).map(|m| (i, j, m))).collect()
+    };
+    let found: Vec<Vec<_>> = nodes.par_iter().map(|&i| stopped(i)).collect();
+    for (i, j, m) in found.into_iter().flatten() {
+        graph.add_edge(i, j, Witness::Cells(m));
+    }
+}
+
+/// The number of each node's strongly connected component.
+pub fn component_of(graph: &Dbg) -> Vec<usize> {
+    let mut of = vec![0; graph.node_count()];
+    for (k, component) in tarjan_scc(graph).iter().enumerate() {
+        component.iter().for_each(|n| of[n.index()] = k);
+    }
+    of
 }
 
 /// Ties the held parts together, so that no component parts them.
@@ -81,11 +108,10 @@ pub fn tie(graph: &mut Dbg, is_held: impl Fn(PartIx) -> bool) {
 /// Strongly connected components with no arc leaving (`Outgoing`: they can move along d) or none entering (`Incoming`:
 /// they can move along -d), each sorted, in the order of their first part. The whole set when it is one component.
 pub fn loose(graph: &Dbg, none: Direction) -> Vec<Vec<PartIx>> {
-    let components = tarjan_scc(graph);
-    let of: BTreeMap<NodeIndex, usize> =
-        components.iter().enumerate().flat_map(|(k, c)| c.iter().map(move |&n| (n, k))).collect();
-    let closed =
-        |c: &&Vec<NodeIndex>| c.iter().all(|&n| graph.neighbors_directed(n, none).all(|m| of[&m] == of[&n]));
+    let (components, of) = (tarjan_scc(graph), component_of(graph));
+    let closed = |c: &&Vec<NodeIndex>| {
+        c.iter().all(|&n| graph.neighbors_directed(n, none).all(|m| of[m.index()] == of[n.index()]))
+    };
     let sorted = |c: &Vec<NodeIndex>| {
         let mut parts: Vec<PartIx> = c.iter().map(|&n| graph[n]).collect();
         parts.sort();

@@ -10,6 +10,7 @@
 
 pub mod cone;
 pub mod graph;
+pub mod reach;
 pub mod sector;
 pub mod shadow;
 pub mod sweep;
@@ -25,7 +26,7 @@ use glam::DVec3;
 pub const TOUCH_SHARE: f64 = 1.0 / (1u64 << 20) as f64;
 
 /// Round-off of a coordinate as a share of the assembly's extent, with a factor 4 for sums of three products: 2^-38.
-const ROUND_OFF_SHARE: f64 = 1.0 / (1u64 << 38) as f64;
+pub const ROUND_OFF_SHARE: f64 = 1.0 / (1u64 << 38) as f64;
 
 /// Angle in radians below which two directions count as one and a plane as parallel: [`TOUCH_SHARE`], because a part
 /// of diagonal D moved by D along a direction wrong by this angle ends [`Touch`] away from where it should.

@@ -31,13 +31,13 @@ impl Shapes {
             .parts
             .iter()
             .map(|part| {
-                let m: DMat3 = part.pose.matrix3.into();
+                let m: DMat3 = part.pose.matrix3;
                 let key = (part.solid, m.to_cols_array().map(f64::to_bits));
                 let at = *known.entry(key).or_insert_with(|| {
                     turned.push(asm.solids[part.solid].cells.iter().map(|c| turn(c, m)).collect());
                     turned.len() - 1
                 });
-                (at, part.pose.translation.into())
+                (at, part.pose.translation)
             })
             .collect();
         Shapes { turned, place }
@@ -76,13 +76,33 @@ impl Span {
     }
 }
 
+/// A convex polygon, counter-clockwise, and for each side from corner k to k + 1 its unit outward normal `n` and offset
+/// `c`: inside is `n . x <= c`.
+#[derive(Clone, Debug, Default)]
+pub struct Outline {
+    pub corners: Vec<DVec2>,
+    pub sides: Vec<(DVec2, f64)>,
+}
+
+impl Outline {
+    fn around(points: Vec<DVec2>) -> Outline {
+        let corners = hull(points);
+        let side = |k: usize| {
+            let (a, b) = (corners[k], corners[(k + 1) % corners.len()]);
+            let n = -(b - a).perp().normalize_or_zero();
+            (n, n.dot(a))
+        };
+        Outline { sides: (0..corners.len()).map(side).collect(), corners }
+    }
+}
+
 /// The cells of one solid in one orientation seen along the direction. Outlines are made when first asked for.
 #[derive(Debug)]
 pub struct Shadows {
     pub spans: Vec<Span>,
     /// Around all cells.
     pub whole: Span,
-    outlines: Vec<OnceLock<Vec<DVec2>>>,
+    outlines: Vec<OnceLock<Outline>>,
 }
 
 /// An assembly seen along one direction. Shadows are made when first asked for.
@@ -111,11 +131,11 @@ impl<'a> View<'a> {
         (shadows, self.frame * offset)
     }
 
-    /// Outline of one cell before its part's offset: convex, counter-clockwise.
-    pub fn outline(&self, p: PartIx, cell: usize) -> &[DVec2] {
+    /// Outline of one cell before its part's offset.
+    pub fn outline(&self, p: PartIx, cell: usize) -> &Outline {
         let (cells, _) = self.shapes.part(p);
         let seen = || cells[cell].vertices.iter().map(|&v| (self.frame * v).truncate()).collect();
-        self.part(p).0.outlines[cell].get_or_init(|| hull(seen()))
+        self.part(p).0.outlines[cell].get_or_init(|| Outline::around(seen()))
     }
 
     /// Box of the part in (u, v, along d).

@@ -9,7 +9,7 @@
 //! where both are thick.
 
 use super::Touch;
-use super::shadow::{Convex, Span, View};
+use super::shadow::{Convex, Outline, Span, View};
 use crate::assembly::PartIx;
 use glam::{DVec2, DVec3};
 
@@ -23,6 +23,17 @@ pub struct Meeting {
 
 /// The first pair of cells (by index) that meet when `i` moves along the view's direction; None: it passes.
 pub fn meets(view: &View, i: PartIx, j: PartIx, touch: Touch) -> Option<Meeting> {
+    meetings(view, i, j, touch, Some)
+}
+
+/// The first answer that `pick` gives for a pair of cells that meet.
+pub fn meetings<T>(
+    view: &View,
+    i: PartIx,
+    j: PartIx,
+    touch: Touch,
+    mut pick: impl FnMut(Meeting) -> Option<T>,
+) -> Option<T> {
     let ((seen_i, at_i), (seen_j, at_j)) = (view.part(i), view.part(j));
     let step = at_j - at_i;
     let whole = seen_j.whole.shift(step);
@@ -34,7 +45,7 @@ pub fn meets(view: &View, i: PartIx, j: PartIx, touch: Touch) -> Option<Meeting>
     let cells_i = seen_i.spans.iter().enumerate().filter(|(_, s)| !apart(s, &whole, touch));
     cells_i
         .flat_map(|(a, sa)| near.iter().filter(|(_, sb)| !apart(sa, sb, touch)).map(move |&(b, _)| (a, b)))
-        .find_map(|(a, b)| cells_meet(view, (i, a), (j, b), step, touch))
+        .find_map(|(a, b)| cells_meet(view, (i, a), (j, b), step, touch).and_then(&mut pick))
 }
 
 /// True when boxes alone show that `a` passes `b`: shadows overlap by no more than `touch`, or `b` is behind.
@@ -56,16 +67,14 @@ fn cells_meet(view: &View, a: CellOf, b: CellOf, step: DVec3, touch: Touch) -> O
     Some(Meeting { a: a.1, b: b.1, depth })
 }
 
-/// Least overlap of two convex outlines, `q` shifted by `at`, across the edges of `p`; stops at the first gap.
-fn overlap(p: &[DVec2], q: &[DVec2], at: DVec2) -> f64 {
+/// Least overlap of two convex outlines, `q` shifted by `at`, across the sides of `p`; stops at the first gap.
+fn overlap(p: &Outline, q: &Outline, at: DVec2) -> f64 {
     let mut least = f64::INFINITY;
-    for k in 0..p.len() {
-        let (a, b) = (p[k], p[(k + 1) % p.len()]);
-        let out = -(b - a).perp().normalize_or_zero();
-        let reach = q.iter().map(|&c| out.dot(c)).fold(f64::INFINITY, f64::min) + out.dot(at);
-        least = least.min(out.dot(a) - reach);
+    for &(n, c) in &p.sides {
+        let reach = q.corners.iter().fold(f64::INFINITY, |m, &x| m.min(n.dot(x)));
+        least = least.min(c - n.dot(at) - reach);
         if least <= 0.0 {
-            return least;
+            break;
         }
     }
     least
@@ -103,12 +112,11 @@ fn chord(cell: &Convex, base: DVec3, d: DVec3) -> Option<(f64, f64)> {
     (lo <= hi && (hi - lo).is_finite()).then_some((lo, hi))
 }
 
-/// The part of `p` inside `q` shifted by `at` (Sutherland and Hodgman); both convex and counter-clockwise.
-fn common(p: &[DVec2], q: &[DVec2], at: DVec2) -> Vec<DVec2> {
-    let mut poly = p.to_vec();
-    for k in 0..q.len() {
-        let (a, b) = (q[k] + at, q[(k + 1) % q.len()] + at);
-        let side = |x: DVec2| (b - a).perp_dot(x - a);
+/// The part of `p` inside `q` shifted by `at` (Sutherland and Hodgman).
+fn common(p: &Outline, q: &Outline, at: DVec2) -> Vec<DVec2> {
+    let mut poly = p.corners.clone();
+    for &(n, c) in &q.sides {
+        let side = |x: DVec2| c - n.dot(x - at);
         let old = std::mem::take(&mut poly);
         for (m, &x) in old.iter().enumerate() {
             let y = old[(m + 1) % old.len()];

@@ -5,7 +5,7 @@
 use super::content::{Chapter, Column, Table, Tone};
 use crate::assembly::{Assembly, PartIx};
 use crate::locking::{Check, Freedom, Motion, Stress, Twist, Verdict};
-use crate::sequence::{Outcome, Plan, Straight};
+use crate::sequence::{Outcome, Plan, Straight, Stuck};
 use glam::DVec3;
 
 /// Does it lock, and how do we know?
@@ -93,20 +93,33 @@ fn free(assembly: &Assembly, motion: &Motion) -> Chapter {
 
 /// How does it go together? Steps are told in the order of assembly.
 pub fn plan<C>(assembly: &Assembly, plan: &Plan<C>) -> Chapter {
-    let stuck = plan.stuck.iter().map(|s| s.parts.join(", ")).collect::<Vec<_>>().join("; and ");
-    let (tone, headline, words) = match plan.outcome {
+    let searched = [plan.searched.sets, plan.searched.directions].map(thousands);
+    let touch = format!("overlap up to {} mm", scientific(plan.touch * assembly.mm_per_unit));
+    let facts = vec![
+        fact("searched", format!("{} sets, {} directions", searched[0], searched[1])),
+        fact("counts as touching", touch),
+    ];
+    let tables = if plan.steps.is_empty() { vec![] } else { vec![steps(assembly, plan)] };
+    Chapter { facts, tables, ..outcome(plan) }
+}
+
+/// The headline of a plan, and why there is none.
+fn outcome<C>(plan: &Plan<C>) -> Chapter {
+    let stuck = sets(plan, |_| true);
+    let (tone, headline, why) = match plan.outcome {
         Outcome::Assembled => {
             let moves =
                 if plan.steps.len() == 1 { "one move".into() } else { format!("{} moves", plan.steps.len()) };
-            (Tone::Good, format!("It goes together: {moves}, straight and without force."), vec![])
+            (Tone::Good, format!("It goes together: {moves}, straight and without force."), None)
         }
         Outcome::NeedsFlexible => (
             Tone::Bad,
             "Not from rigid parts: something must bend.".into(),
-            vec![format!(
-                "Locked by themselves: {stuck}. No motion can start there, so no order of rigid moves takes these parts \
-                 apart or puts them together at zero clearance."
-            )],
+            Some(format!(
+                "Locked by themselves: {}. No motion can start there, so no order of rigid moves takes these parts \
+                 apart or puts them together at zero clearance.",
+                sets(plan, |s| s.lock.is_some())
+            )),
         ),
         Outcome::NotFound => {
             let excluded = plan.stuck.iter().all(|s| s.straight_moves == Straight::None);
@@ -115,22 +128,19 @@ pub fn plan<C>(assembly: &Assembly, plan: &Plan<C>) -> Chapter {
             } else {
                 "The search gave up before every straight move was excluded."
             };
-            let found = vec![format!("These stayed together: {stuck}. {why}")];
-            (Tone::Undecided, "No plan found, and none excluded.".into(), found)
+            (
+                Tone::Undecided,
+                "No plan found, and none excluded.".into(),
+                Some(format!("Stuck: {stuck}. {why}")),
+            )
         }
     };
-    let searched =
-        format!("{} sets, {} directions", thousands(plan.searched.sets), thousands(plan.searched.directions));
-    let touch = format!("overlap up to {} mm", scientific(plan.touch * assembly.mm_per_unit));
-    let tables = if plan.steps.is_empty() { vec![] } else { vec![steps(assembly, plan)] };
-    Chapter {
-        tone,
-        headline,
-        words,
-        facts: vec![fact("searched", searched), fact("counts as touching", touch)],
-        tables,
-        ..Chapter::default()
-    }
+    Chapter { tone, headline, words: why.into_iter().collect(), ..Chapter::default() }
+}
+
+/// The sets that stayed together, of those that `keep` picks.
+fn sets<C>(plan: &Plan<C>, keep: impl Fn(&Stuck<C>) -> bool) -> String {
+    plan.stuck.iter().filter(|s| keep(s)).map(|s| s.parts.join(", ")).collect::<Vec<_>>().join("; and ")
 }
 
 fn steps<C>(assembly: &Assembly, plan: &Plan<C>) -> Table {

@@ -2,6 +2,7 @@
 //! orientation, patch normals by part, sizes. Nothing here decides anything.
 
 use crate::assembly::{Assembly, Mobility, PartIx};
+use crate::blocking::graph::{Pairs, pairs};
 use crate::blocking::shadow::{Shapes, View};
 use crate::blocking::sweep::meets;
 use crate::blocking::{Touch, sector::Blocked};
@@ -25,6 +26,7 @@ pub struct Field<'a> {
     pub patches: &'a [Patch],
     pub shapes: Shapes,
     pub touch: Touch,
+    pub pairs: Pairs,
     sides: Vec<Vec<Side>>,
     volumes: Vec<f64>,
 }
@@ -37,7 +39,15 @@ impl<'a> Field<'a> {
             sides[p.b.at()].push(Side { other: p.a, normal: -p.normal });
         }
         let volumes = asm.solids.iter().map(|s| s.volume()).collect();
-        Field { asm, patches, shapes: Shapes::of(asm), touch: Touch::of(asm), sides, volumes }
+        Field {
+            asm,
+            patches,
+            shapes: Shapes::of(asm),
+            touch: Touch::of(asm),
+            pairs: pairs(patches),
+            sides,
+            volumes,
+        }
     }
 
     pub fn is_held(&self, p: PartIx) -> bool {

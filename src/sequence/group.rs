@@ -10,14 +10,14 @@ use super::leave::landmarks;
 use crate::assembly::PartIx;
 use crate::blocking::SAME_ANGLE;
 use crate::blocking::cone::{Cone, polar};
-use crate::blocking::graph::{Dbg, Witness, finite, infinitesimal, loose, tie};
+use crate::blocking::graph::{Dbg, Witness, component_of, infinitesimal, loose, stop_later, tie};
 use crate::blocking::sector::{Blocked, Sector, sectors};
 use crate::blocking::shadow::View;
 use glam::DVec3;
 use petgraph::Direction;
-use petgraph::graph::NodeIndex;
+use petgraph::graph::{EdgeReference, NodeIndex};
 use petgraph::visit::EdgeRef;
-use std::collections::{BTreeMap, VecDeque};
+use std::collections::VecDeque;
 
 /// Blocking graphs made for one set before giving up.
 const MOST_GRAPHS: usize = 300;
@@ -61,7 +61,7 @@ pub fn group(field: &Field, set: &Set, prefer: &[DVec3]) -> GroupSearch {
         if let Some(found) = parting(field, set, &graph, d) {
             return GroupSearch { group: found, tried: tried.len() };
         }
-        let blocked = kept_together(field, &parts, &graph, d);
+        let blocked = kept_together(field, &graph, d);
         left.extend(if blocked.holds(d) { blocked.taken_from(&sector) } else { sector.split(d) });
     }
     GroupSearch { group: Group::Never, tried: tried.len() }
@@ -72,9 +72,15 @@ fn is_new(tried: &[DVec3], d: DVec3) -> bool {
     tried.iter().all(|t| t.distance(d) > SAME_ANGLE && t.distance(-d) > SAME_ANGLE)
 }
 
+/// First-order arcs, and finite ones between components that those leave apart: enough to know the components.
 fn dbg(field: &Field, parts: &[PartIx], d: DVec3) -> Dbg {
-    let mut graph = finite(&View::new(&field.shapes, d), parts, field.touch);
+    let mut graph = infinitesimal(parts, field.patches, &field.pairs, d);
     tie(&mut graph, |p| field.is_held(p));
+    let of = component_of(&graph);
+    if of.iter().any(|&k| k != of[0]) {
+        let view = View::new(&field.shapes, d);
+        stop_later(&mut graph, &view, field.touch, |i, j| of[i.index()] != of[j.index()]);
+    }
     graph
 }
 
@@ -98,15 +104,14 @@ fn parting(field: &Field, set: &Set, graph: &Dbg, d: DVec3) -> Option<Group> {
     let along = loose(graph, Direction::Outgoing).into_iter().map(|g| (g, d));
     let back = loose(graph, Direction::Incoming).into_iter().map(|g| (g, -d));
     let both = along.chain(back).filter(|(g, _)| g.len() < set.len());
-    let may = both.filter_map(|(g, d)| {
+    let may = both.map(|(g, d)| {
         let group: Set = g.into_iter().collect();
         let rest: Set = set.difference(&group).copied().collect();
         let has_held = |s: &Set| s.iter().any(|&p| field.is_held(p));
         match (has_held(&group), has_held(&rest)) {
-            (true, _) => Some((rest, -d)),
-            (false, true) => Some((group, d)),
-            (false, false) if rest.len() < group.len() => Some((rest, -d)),
-            (false, false) => Some((group, d)),
+            (true, _) => (rest, -d),
+            (false, false) if rest.len() < group.len() => (rest, -d),
+            _ => (group, d),
         }
     });
     let size = |s: &Set| (s.len(), s.iter().map(|&p| field.volume(p)).sum::<f64>());
@@ -129,28 +134,25 @@ fn half_sphere(field: &Field, set: &Set) -> Vec<Sector> {
 }
 
 /// Directions around d in which the graph is known to stay strongly connected.
-fn kept_together(field: &Field, parts: &[PartIx], graph: &Dbg, d: DVec3) -> Blocked {
-    let arcs = widest_arcs(field, parts, graph, d);
+fn kept_together(field: &Field, graph: &Dbg, d: DVec3) -> Blocked {
+    let arcs: Vec<Arc> = graph.edge_references().map(|e| arc(field, graph, e, d)).collect();
     let Some(root) = graph.node_indices().next() else { return Blocked(vec![]) };
-    let mut planes = Vec::new();
-    for way in [Direction::Outgoing, Direction::Incoming] {
-        for arc in spanning(graph, &arcs, root, way, d) {
-            planes.extend_from_slice(&arcs[&arc].0);
-        }
-    }
-    Blocked(planes)
+    let ways = [Direction::Outgoing, Direction::Incoming];
+    let trees = ways.into_iter().flat_map(|way| spanning(graph.node_count(), &arcs, root, way));
+    Blocked(trees.flat_map(|a| a.blocked.0.iter().copied()).collect())
 }
 
-type Arcs = BTreeMap<(NodeIndex, NodeIndex), Blocked>;
-
-/// How far inside a blocked cone the direction is, in radians to first order.
-fn margin(blocked: &Blocked, d: DVec3) -> f64 {
-    blocked.0.iter().map(|n| n.dot(d)).fold(1.0, f64::min)
+/// An arc, the directions in which it is there, and how far inside them d is, in radians to first order.
+struct Arc {
+    from: NodeIndex,
+    to: NodeIndex,
+    blocked: Blocked,
+    margin: f64,
 }
 
-/// For each arc the blocked cone, among its patch and its cells, in which d is deepest.
-fn widest_arcs(field: &Field, parts: &[PartIx], graph: &Dbg, d: DVec3) -> Arcs {
-    let cone = |from: NodeIndex, to: NodeIndex, w: &Witness| match *w {
+fn arc(field: &Field, graph: &Dbg, e: EdgeReference<Witness>, d: DVec3) -> Arc {
+    let (from, to) = (e.source(), e.target());
+    let blocked = match *e.weight() {
         Witness::Held => Blocked(vec![]),
         Witness::Patch(k) => {
             let n = field.patches[k].normal;
@@ -158,37 +160,21 @@ fn widest_arcs(field: &Field, parts: &[PartIx], graph: &Dbg, d: DVec3) -> Arcs {
         }
         Witness::Cells(m) => field.blocked(graph[from], m.a, graph[to], m.b),
     };
-    let first_order = infinitesimal(parts, field.patches, d);
-    let mut arcs = Arcs::new();
-    for g in [graph, &first_order] {
-        for e in g.edge_references().filter(|e| graph.contains_edge(e.source(), e.target())) {
-            let (key, new) = ((e.source(), e.target()), cone(e.source(), e.target(), e.weight()));
-            if arcs.get(&key).is_none_or(|old| margin(old, d) < margin(&new, d)) {
-                arcs.insert(key, new);
-            }
-        }
-    }
-    arcs
+    let margin = blocked.0.iter().map(|n| n.dot(d)).fold(1.0, f64::min);
+    Arc { from, to, blocked, margin }
 }
 
 /// The tree from (or to) the root that always takes the arc with the widest margin next.
-fn spanning(
-    graph: &Dbg,
-    arcs: &Arcs,
-    root: NodeIndex,
-    way: Direction,
-    d: DVec3,
-) -> Vec<(NodeIndex, NodeIndex)> {
-    let (mut inside, mut tree) = (vec![root], Vec::new());
-    let ends = |&(a, b): &(NodeIndex, NodeIndex)| if way == Direction::Outgoing { (a, b) } else { (b, a) };
-    while inside.len() < graph.node_count() {
-        let open = arcs.iter().filter(|(arc, _)| {
-            let (near, far) = ends(arc);
-            inside.contains(&near) && !inside.contains(&far)
-        });
-        let Some((&arc, _)) = open.max_by(|a, b| margin(a.1, d).total_cmp(&margin(b.1, d))) else { break };
-        inside.push(ends(&arc).1);
-        tree.push(arc);
+fn spanning(nodes: usize, arcs: &[Arc], root: NodeIndex, way: Direction) -> Vec<&Arc> {
+    let mut inside = vec![false; nodes];
+    inside[root.index()] = true;
+    let mut tree = Vec::new();
+    while tree.len() + 1 < nodes {
+        let ends = |a: &Arc| if way == Direction::Outgoing { (a.from, a.to) } else { (a.to, a.from) };
+        let open = arcs.iter().filter(|a| inside[ends(a).0.index()] && !inside[ends(a).1.index()]);
+        let Some(widest) = open.max_by(|a, b| a.margin.total_cmp(&b.margin)) else { break };
+        inside[ends(widest).1.index()] = true;
+        tree.push(widest);
     }
     tree
 }

@@ -9,6 +9,7 @@
 //! not against those that left before.
 
 mod answer;
+pub mod clearance;
 pub mod field;
 mod gap;
 pub mod group;

@@ -152,13 +152,11 @@ impl<'a> Scene<'a> {
         let direction = DVec3::from_array(step.direction);
         let mm = step.distance * self.asm.mm_per_unit;
         let why = match () {
-            _ if !((direction.length() - 1.0).abs() <= WRITTEN_SHARE) => "the direction is not a unit vector",
+            _ if !near(direction.length(), 1.0) => "the direction is not a unit vector",
             _ if !(step.distance > 0.0 && step.distance.is_finite()) => {
                 "the distance is not a positive number"
             }
-            _ if !((step.distance_mm - mm).abs() <= WRITTEN_SHARE * mm) => {
-                "the distance in mm is another one"
-            }
+            _ if !near(step.distance_mm, mm) => "the distance in mm is another one",
             _ if !(step.clear >= 0.0 && step.clear.is_finite()) => {
                 "the least distance kept is no such number"
             }
@@ -265,6 +263,11 @@ impl<'a> Scene<'a> {
     }
 }
 
+/// False for what is no number.
+fn near(found: f64, expected: f64) -> bool {
+    (found - expected).abs() <= WRITTEN_SHARE * expected.abs()
+}
+
 fn unsolved(step: usize) -> Checked {
     Checked::Undecided { why: format!("step {step}: a program was not solved") }
 }
@@ -319,7 +322,7 @@ fn agrees(cell: &Cell, tolerance: f64) -> Result<(), &'static str> {
     let off = |n: DVec3, d: f64, v: DVec3| n.dot(v) - d;
     for (&(n, d), facet) in cell.planes.iter().zip(&cell.facets) {
         let on = |&k: &u32| cell.vertices.get(k as usize).is_some_and(|&v| off(n, d, v).abs() <= tolerance);
-        if !((n.length() - 1.0).abs() <= WRITTEN_SHARE) {
+        if !near(n.length(), 1.0) {
             return Err("a plane's normal is not a unit vector");
         }
         if !facet.iter().all(on) || !cell.vertices.iter().all(|&v| off(n, d, v) <= tolerance) {

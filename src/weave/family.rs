@@ -4,11 +4,12 @@
 //! broken, pointed or irregular ones are [`Family::Other`].
 
 use super::{Draft, Kind, Strand};
-use serde::Serialize;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 use std::fmt;
 
 /// Which way the diagonal of a twill climbs, with x (warps) to the right and y (wefts) up.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub enum Hand {
     /// Up to the left, as the stroke of the letter: `[a,b,-1]`.
     S,

@@ -8,9 +8,11 @@ use super::{Check, Outcome, check};
 use crate::files::stl;
 use crate::mesh::Mesh;
 use glam::DVec3;
+use rayon::prelude::*;
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 const GATE: &str = include_str!("../../scad/gate.scad");
 
@@ -28,6 +30,7 @@ pub struct OpenScad {
     program: String,
     name: String,
     folder: PathBuf,
+    runs: AtomicUsize,
 }
 
 impl Drop for OpenScad {
@@ -37,54 +40,70 @@ impl Drop for OpenScad {
 }
 
 impl OpenScad {
-    /// Puts the gate's source into a folder of its own below `scratch`.
+    /// Puts the gate's source into a new folder below `scratch`.
     pub fn new(program: &str, scratch: &Path) -> io::Result<OpenScad> {
-        let folder = scratch.join(format!(".openscad-{}", std::process::id()));
-        fs::create_dir_all(&folder)?;
+        let name = |k: usize| scratch.join(format!("weavelock-openscad-{}-{k}", std::process::id()));
+        let mut free = (0..).map(name).skip_while(|f| f.exists());
+        let folder = free.next().unwrap_or_else(|| name(0));
+        fs::create_dir(&folder)?;
         fs::write(folder.join("gate.scad"), GATE)?;
-        Ok(OpenScad { program: program.to_string(), name: version(program, "--version"), folder })
+        Ok(OpenScad {
+            program: program.to_string(),
+            name: version(program, "--version"),
+            folder,
+            runs: AtomicUsize::new(0),
+        })
     }
 
     /// Whether OpenSCAD finds the volume (mm3) that we do. `high`: upper corner of the part's box.
     pub fn volume(&self, file: &Path, expected: f64, high: DVec3) -> Check {
-        let verdict = self.gate(file, None, beyond(high)).and_then(|out| {
-            let found = out.volume() - CUBE;
-            let off = (found - expected).abs() / expected.abs().max(f64::MIN_POSITIVE);
-            if off <= VOLUME_TOLERANCE {
-                return Ok(());
-            }
-            Err(Outcome::Failed(format!("it finds {found:.3} mm3, expected {expected:.3}")))
-        });
+        let verdict =
+            quoted(file).and_then(|f| self.gate(&format!("part={f}"), beyond(high))).and_then(|out| {
+                let found = out.volume() - CUBE;
+                let off = (found - expected).abs() / expected.abs().max(f64::MIN_POSITIVE);
+                if off <= VOLUME_TOLERANCE {
+                    return Ok(());
+                }
+                Err(Outcome::Failed(format!("it finds {found:.3} mm3, expected {expected:.3}")))
+            });
         check(&self.name, "volume", verdict)
     }
 
-    /// Whether two parts share no volume: all that comes out is the cube.
-    pub fn apart(&self, a: &Path, b: &Path, high: DVec3) -> Check {
-        let at = beyond(high);
-        let verdict = self.gate(a, Some(b), at).and_then(|out| {
-            let Some(shared) = out.vertices.iter().find(|v| v.cmplt(at).any()) else {
-                let found = out.volume();
-                return if (found - CUBE).abs() < VOLUME_TOLERANCE { Ok(()) } else { Err(no_cube(found)) };
-            };
-            let volume = out.volume() - CUBE;
-            Err(Outcome::Failed(format!(
-                "they share {volume:.6} mm3, at ({:.3}, {:.3}, {:.3})",
-                shared.x, shared.y, shared.z
-            )))
-        });
-        check(&self.name, "shares no volume", verdict)
+    /// Whether the two parts of each pair share no volume. `high`: upper corner of the box of all.
+    ///
+    /// Many pairs go into one run, where each part is read once; only where something comes out, or the run fails, is
+    /// each pair of it asked about alone.
+    pub fn apart(&self, pairs: &[(&Path, &Path)], high: DVec3) -> Vec<Check> {
+        let share = pairs.len().div_ceil(rayon::current_num_threads()).clamp(1, MOST_PAIRS);
+        let of_run = |pairs: &[(&Path, &Path)]| match self.share_nothing(pairs, high) {
+            Ok(()) => vec![Ok(()); pairs.len()],
+            Err(why) if pairs.len() == 1 => vec![Err(why)],
+            Err(_) => pairs.iter().map(|p| self.share_nothing(std::slice::from_ref(p), high)).collect(),
+        };
+        let verdicts: Vec<_> = pairs.par_chunks(share).flat_map_iter(of_run).collect();
+        verdicts.into_iter().map(|v| check(&self.name, "shares no volume", v)).collect()
     }
 
-    fn gate(&self, a: &Path, b: Option<&Path>, at: DVec3) -> Result<Mesh, Outcome> {
-        let stem = |p: &Path| p.file_name().unwrap_or_default().to_string_lossy().into_owned();
-        let out = self.folder.join(format!("{}+{}.stl", stem(a), b.map(stem).unwrap_or_default()));
-        let mut arguments: Vec<String> =
-            ["--hardwarnings", "--export-format", "binstl", "-o"].map(String::from).to_vec();
+    /// All that comes out is the cube.
+    fn share_nothing(&self, pairs: &[(&Path, &Path)], high: DVec3) -> Result<(), Outcome> {
+        let at = beyond(high);
+        let names = pairs.iter().map(|(a, b)| Ok(format!("[{},{}]", quoted(a)?, quoted(b)?)));
+        let names: Vec<String> = names.collect::<Result<_, Outcome>>()?;
+        let out = self.gate(&format!("pairs=[{}]", names.join(",")), at)?;
+        let Some(shared) = out.vertices.iter().find(|v| v.cmplt(at).any()) else {
+            let found = out.volume();
+            return if (found - CUBE).abs() < VOLUME_TOLERANCE { Ok(()) } else { Err(no_cube(found)) };
+        };
+        let volume = out.volume() - CUBE;
+        let place = format!("({:.3}, {:.3}, {:.3})", shared.x, shared.y, shared.z);
+        Err(Outcome::Failed(format!("they share {volume:.6} mm3, at {place}")))
+    }
+
+    fn gate(&self, what: &str, at: DVec3) -> Result<Mesh, Outcome> {
+        let out = self.out();
+        let mut arguments = ["--hardwarnings", "--export-format", "binstl", "-o"].map(String::from).to_vec();
         arguments.push(out.display().to_string());
-        let place = format!("at=[{},{},{}]", at.x, at.y, at.z);
-        for define in
-            [format!("a={}", quoted(a)?), format!("b={}", b.map_or(Ok("\"\"".into()), quoted)?), place]
-        {
+        for define in [what.to_string(), format!("at=[{},{},{}]", at.x, at.y, at.z)] {
             arguments.extend(["-D".to_string(), define]);
         }
         arguments.push(self.folder.join("gate.scad").display().to_string());
@@ -97,7 +116,15 @@ impl OpenScad {
             (None, code) => Err(Outcome::Failed(format!("it exits {code:?}: {}", last_line(&said)))),
         }
     }
+
+    /// A file name of its own for each run.
+    fn out(&self) -> PathBuf {
+        self.folder.join(format!("{}.stl", self.runs.fetch_add(1, Ordering::Relaxed)))
+    }
 }
+
+/// Pairs in one run: a dozen seconds of work for parts of two thousand triangles, and far from the time limit.
+const MOST_PAIRS: usize = 32;
 
 fn no_cube(found: f64) -> Outcome {
     Outcome::Failed(format!("the cube that should come out alone has {found} mm3"))

@@ -70,14 +70,15 @@ impl Batch {
         write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
     ) -> Result<PathBuf, FileError> {
         let place = self.folder.join(name);
-        let beside = self.folder.join(format!(".{name}.part-{}", std::process::id()));
+        let failed = |cause| FileError { action: "write", path: self.folder.join(name), cause };
+        let (beside, file) = create_beside(&place).map_err(failed)?;
         self.staged.push((beside.clone(), place.clone()));
-        let written = fs::File::create(&beside).and_then(|file| {
+        let written = (|| {
             let mut out = BufWriter::new(file);
             write(&mut out)?;
             out.flush()?;
             out.get_ref().sync_all()
-        });
+        })();
         written.map_err(|cause| FileError { action: "write", path: place, cause })?;
         Ok(beside)
     }
@@ -113,6 +114,19 @@ impl Drop for Batch {
         }
         for folder in self.made.iter().rev() {
             let _ = fs::remove_dir(folder);
+        }
+    }
+}
+
+/// A new file beside a place, with a name that nobody has.
+fn create_beside(place: &Path) -> io::Result<(PathBuf, fs::File)> {
+    let name = place.file_name().unwrap_or_default().to_string_lossy();
+    let mut count = 0;
+    loop {
+        let beside = place.with_file_name(format!(".{name}.{}-{count}.part", std::process::id()));
+        match fs::File::create_new(&beside) {
+            Err(e) if e.kind() == io::ErrorKind::AlreadyExists => count += 1,
+            made => return made.map(|file| (beside, file)),
         }
     }
 }

@@ -5,6 +5,7 @@
 //! Not promised: that a triangle keeps its orientation (see `settle`).
 
 use super::least::{HalfSpace, nearest};
+use crate::ears::triangulate;
 use crate::mesh::Mesh;
 use crate::shape::{Facet, PLANE_ROUND_OFF, Shape};
 use glam::{DAffine3, DVec3};
@@ -244,29 +245,4 @@ fn distinct(planes: impl Iterator<Item = HalfSpace>) -> Vec<HalfSpace> {
         }
     }
     kept
-}
-
-/// Cuts a convex polygon into triangles, the best-shaped ear first: no sliver that can be avoided.
-fn triangulate(vertices: &[DVec3], f: &Facet) -> Vec<[u32; 3]> {
-    let mut left = f.corners.clone();
-    let mut out = Vec::with_capacity(left.len() - 2);
-    while left.len() > 3 {
-        let ear = |k: usize| {
-            let n = left.len();
-            [left[(k + n - 1) % n], left[k], left[(k + 1) % n]]
-        };
-        let shape = |k: usize| roundness(ear(k).map(|c| vertices[c as usize]), f.normal);
-        let best =
-            (0..left.len()).max_by(|&a, &b| shape(a).total_cmp(&shape(b)).then(b.cmp(&a))).unwrap_or(0);
-        out.push(ear(best));
-        left.remove(best);
-    }
-    out.push([left[0], left[1], left[2]]);
-    out
-}
-
-/// Signed area over the longest side squared: 0 for a sliver, 0.43 for an equilateral triangle.
-fn roundness([a, b, c]: [DVec3; 3], normal: DVec3) -> f64 {
-    let longest = a.distance_squared(b).max(b.distance_squared(c)).max(c.distance_squared(a));
-    (b - a).cross(c - a).dot(normal) / (2.0 * longest.max(f64::MIN_POSITIVE))
 }

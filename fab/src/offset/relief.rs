@@ -42,9 +42,11 @@ struct Surface {
 pub fn relieve(bodies: &mut [Body], aim: &Aim) -> Vec<Option<Settled>> {
     let mut done: Vec<Option<Settled>> = vec![None; bodies.len()];
     let mut surfaces: Vec<Surface> = bodies.par_iter().map(surface).collect();
+    let mut changed = vec![true; bodies.len()];
     for _ in 0..ROUNDS {
-        let pushes = all_pushes(&surfaces, aim);
-        if pushes.iter().all(BTreeMap::is_empty) {
+        let pushes = all_pushes(&surfaces, &changed, aim);
+        changed = pushes.iter().map(|p| !p.is_empty()).collect();
+        if !changed.contains(&true) {
             break;
         }
         bodies.par_iter_mut().zip(&mut surfaces).zip(&mut done).zip(&pushes).for_each(
@@ -74,10 +76,12 @@ fn apply(body: &mut Body, pushes: &BTreeMap<u32, Push>, thinnest: f64, before: S
     Settled { collapses: before.collapses + now.collapses, unsettled: now.unsettled }
 }
 
-/// For each body, the farthest push that each of its corners needs.
-fn all_pushes(surfaces: &[Surface], aim: &Aim) -> Vec<BTreeMap<u32, Push>> {
+/// For each body, the farthest push that each of its corners needs; pairs of which none has changed need none.
+fn all_pushes(surfaces: &[Surface], changed: &[bool], aim: &Aim) -> Vec<BTreeMap<u32, Push>> {
     let boxes: Vec<Aabb> = surfaces.iter().map(|s| Aabb::of(s.mesh.vertices.iter().copied())).collect();
-    let near = |i: usize, j: usize| boxes[i].distance_squared(&boxes[j]) < aim.fit * aim.fit;
+    let near = |i: usize, j: usize| {
+        (changed[i] || changed[j]) && boxes[i].distance_squared(&boxes[j]) < aim.fit * aim.fit
+    };
     let pairs: Vec<(usize, usize)> =
         (0..surfaces.len()).flat_map(|j| (0..j).filter(move |&i| near(i, j)).map(move |i| (i, j))).collect();
     let close: Vec<Vec<Close>> = pairs

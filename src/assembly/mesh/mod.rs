@@ -4,7 +4,6 @@
 //! so is refused with all its faults. Not promised: that the surface touches itself
 //! nowhere, nor that several shells keep clear of each other.
 
-mod assemble;
 mod cells;
 mod close;
 mod crossing;
@@ -17,7 +16,6 @@ mod soup;
 mod stl;
 mod threemf;
 
-pub use assemble::{MeshAssembly, assemble};
 pub use cells::NoCells;
 pub(crate) use cells::polytope::{halves, height};
 pub use faults::{MeshFault, MeshFaults, Place};

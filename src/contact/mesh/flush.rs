@@ -1,7 +1,8 @@
 //! Takes two shapes, gives the convex pieces on which their faces lie flat on each other, or lie flush the same way.
 //!
-//! Facets count as coplanar when over their whole common region they are no farther apart than the tolerance. Not
-//! promised: a wedge cut into facets smaller than tolerance / angle reads as flat on its first few.
+//! Facets count as coplanar when over their whole common region they are no farther apart than the tolerance, and their
+//! angle would not part them by more over the smaller facet's longest edge. Not promised: a wedge cut into facets smaller
+//! than tolerance / angle reads as flat on its first few.
 
 use super::polygon;
 use super::shape::Shape;
@@ -119,6 +120,9 @@ fn piece(a: &Shape, b: &Shape, f: usize, g: usize, frame: &Frame, tolerance: f64
     };
     let common = polygon::clipped(ring(a, f), &ring(b, g));
     if common.len() < 3 || polygon::twice_area(&common) <= 0.0 {
+        return None;
+    }
+    if a.faces[f].normal.cross(b.faces[g].normal).length() * a.longest(f).min(b.longest(g)) > tolerance {
         return None;
     }
     let (pa, pb) = (plane(a, f, frame), plane(b, g, frame));

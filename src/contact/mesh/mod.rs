@@ -29,7 +29,7 @@ pub struct Facts {
     pub kind: Kind,
     /// No more than this lies between the two surfaces over the patch, in model units.
     pub gap: f64,
-    /// Angle between the two surfaces, in radians; the normal is off by half of it at most.
+    /// Angle between the two surfaces, in radians: measured for faces, a bound for edges, nothing to measure for points.
     pub tilt: f64,
 }
 
@@ -145,13 +145,18 @@ fn touching(a: &Shape, b: &Shape, origin: DVec3, tolerance: f64) -> MeshContacts
     let flat = faces
         .iter()
         .map(|f| (patch(f.normal, &f.corners), Facts { kind: Kind::Face, gap: f.gap, tilt: f.tilt }));
-    let rest = small.rows.iter().map(|t| {
-        let kind = if t.corners.len() == 1 { Kind::Point } else { Kind::Edge };
-        (patch(t.normal, &t.corners), Facts { kind, gap: tolerance, tilt: 0.0 })
-    });
+    let rest = small.rows.iter().map(|t| (patch(t.normal, &t.corners), small_facts(&t.corners, tolerance)));
     let (patches, facts) = flat.chain(rest).unzip();
     let assumed = small.passed.iter();
     let assumed =
         assumed.map(|q| Assumed { a: a.part, b: b.part, corners: back(&q.corners), why: q.why }).collect();
     MeshContacts { patches, facts, assumed }
+}
+
+/// An edge that stays within the tolerance of a face over a stretch may lean by that over its length.
+fn small_facts(corners: &[DVec3], gap: f64) -> Facts {
+    match corners {
+        [p, q] => Facts { kind: Kind::Edge, gap, tilt: (gap / p.distance(*q)).atan() },
+        _ => Facts { kind: Kind::Point, gap, tilt: 0.0 },
+    }
 }

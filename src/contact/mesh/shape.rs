@@ -60,6 +60,12 @@ impl Shape {
         self.faces[f].corners.iter().map(|&i| self.at(i))
     }
 
+    /// Length of the longest edge of facet f.
+    pub fn longest(&self, f: usize) -> f64 {
+        let next = self.ring(f).cycle().skip(1);
+        self.ring(f).zip(next).map(|(p, q)| p.distance(q)).fold(0.0, f64::max)
+    }
+
     pub fn face_bounds(&self, f: usize) -> Aabb {
         around(self.ring(f))
     }

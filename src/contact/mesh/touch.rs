@@ -223,15 +223,19 @@ fn joined(mut spans: Vec<[f64; 2]>, gap: f64) -> Vec<[f64; 2]> {
     })
 }
 
-/// The span of the segment over facet f, if it is longer than twice the tolerance and stays within it of the plane.
+/// The span of the segment over facet f, if it is longer than twice the tolerance and stays within it of the plane. The
+/// whole segment must run along the plane as well as that, or the facet's length of it: a short stretch over a corner of the
+/// facet would pass at any slope.
 fn within_face(s: &Shape, f: usize, p: DVec3, q: DVec3, tolerance: f64) -> Option<[f64; 2]> {
     let n = s.faces[f].normal;
     let ring: Vec<DVec3> = s.ring(f).collect();
     let side = |k: usize, x: DVec3| n.cross(ring[(k + 1) % ring.len()] - ring[k]).dot(x - ring[k]);
     let span = (0..ring.len()).try_fold([0.0, 1.0], |span, k| cut(span, side(k, p), side(k, q)))?;
     let off = span.map(|t| (p.lerp(q, t) - ring[0]).dot(n).abs());
-    let long = (span[1] - span[0]) * p.distance(q) > 2.0 * tolerance;
-    (long && off[0] <= tolerance && off[1] <= tolerance).then_some(span)
+    let length = p.distance(q);
+    let slope = (q - p).dot(n).abs() / length;
+    let flat = off[0] <= tolerance && off[1] <= tolerance && slope * length.min(s.longest(f)) <= tolerance;
+    (flat && (span[1] - span[0]) * length > 2.0 * tolerance).then_some(span)
 }
 
 /// The part of the span where the affine function from s (at 0) to t (at 1) is not negative.

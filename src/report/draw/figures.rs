@@ -7,12 +7,13 @@ use super::glyph;
 use super::image::Size;
 use super::palette::{self, Colour};
 use super::render;
-use super::scene::{Item, Opacity, Scene, middle};
+use super::scene::{Item, Opacity, Scene};
 use crate::assembly::{Assembly, PartIx};
 use crate::locking::{Motion, Stress};
 use crate::report::content::{Format, Picture};
 use crate::report::words::movers;
 use crate::sequence::Step;
+use crate::solid::Solid;
 use glam::DVec3;
 use std::io;
 
@@ -131,23 +132,24 @@ pub fn moving(assembly: &Assembly, motion: &Motion) -> Figure {
     }
 }
 
-/// One move of a plan as it is put together: the moved parts where they come from, with an arrow for their way, and
+/// One move of a plan as it is put together: the moved parts where they come from, with an arrow behind them, and
 /// the parts that they join in place. Parts of other moves are left out, yet the view is that of all.
 pub fn step(assembly: &Assembly, step: &Step) -> Figure {
     let mut scene = Scene::of(assembly, View::default());
     let away = DVec3::from_array(step.direction) * step.distance;
     let size = extent(&scene);
-    let mut signs = Vec::new();
+    let mut pushed = Vec::new();
     for (part, item) in assembly.parts.iter().zip(&mut scene.items) {
         if step.parts.contains(&part.id) {
-            let from = middle(item) + away;
-            signs.extend(glyph::arrow(from, from - away.normalize_or_zero() * size * 0.4, size * 0.015));
             item.offset = away;
+            pushed.extend(item.points());
         } else if !step.stays.contains(&part.id) {
             item.opacity = Opacity::Hidden;
         }
     }
-    scene.items.extend(signs.iter().map(|s| Item::sign(s, Colour::srgb(palette::MOTION))));
+    scene
+        .items
+        .extend(push(&pushed, away, size * 0.25).map(|s| Item::sign(&s, Colour::srgb(palette::MOTION))));
     let moved = step.parts.join(", ");
     Figure {
         name: "step",
@@ -155,6 +157,15 @@ pub fn step(assembly: &Assembly, step: &Step) -> Figure {
         caption: format!("{moved}: {:.1} mm straight in.", step.distance_mm),
         scene,
     }
+}
+
+/// An arrow that pushes at the far end of what has come by `away`.
+fn push(points: &[DVec3], away: DVec3, length: f64) -> Option<Solid> {
+    let along = away.try_normalize()?;
+    let middle = points.iter().sum::<DVec3>() / points.len().max(1) as f64;
+    let far = points.iter().map(|p| (*p - middle).dot(along)).reduce(f64::max)?;
+    let tip = middle + along * (far + length * 0.1);
+    glyph::arrow(tip + along * length, tip, length * 0.06)
 }
 
 /// The largest contact forces of a self-stress, at most [`MOST_FORCES`], each pushing on part `b` of its contact.

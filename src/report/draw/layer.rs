@@ -8,6 +8,10 @@ use super::scene::{Opacity, Scene};
 use glam::DVec3;
 use std::ops::Range;
 
+/// Share of the largest nearness by which a triangle must beat another: far above round-off, far below what is seen;
+/// so two parts with faces in one plane do not fight, the first one shows.
+const TIE: f64 = 1e-9;
+
 /// Index into [`Stage::triangles`] of a sample that sees nothing.
 pub(super) const NOTHING: u32 = u32::MAX;
 
@@ -26,6 +30,8 @@ pub(super) struct Facing {
 /// All triangles that face the viewer, ghosts included.
 pub(super) struct Stage {
     pub triangles: Vec<Facing>,
+    /// Nearness that counts as none.
+    pub tie: f64,
 }
 
 impl Stage {
@@ -44,7 +50,8 @@ impl Stage {
         }
         // Counter-clockwise from outside turns clockwise where y points down.
         triangles.retain(|f| turn(&f.seen) < 0.0);
-        Stage { triangles }
+        let most = triangles.iter().flat_map(|f| f.seen).map(|p| p.z.abs()).fold(0.0, f64::max);
+        Stage { triangles, tie: most * TIE }
     }
 }
 
@@ -59,11 +66,12 @@ pub(super) struct Layer {
     pub first_row: i64,
     pub rows: usize,
     pub nearest: Vec<u32>,
-    near: Vec<f64>,
+    pub near: Vec<f64>,
+    tie: f64,
 }
 
 impl Layer {
-    pub fn empty(width: usize, rows: Range<i64>) -> Layer {
+    pub fn empty(width: usize, rows: Range<i64>, tie: f64) -> Layer {
         let count = width * (rows.end - rows.start) as usize;
         Layer {
             width,
@@ -71,17 +79,19 @@ impl Layer {
             rows: (rows.end - rows.start) as usize,
             nearest: vec![NOTHING; count],
             near: vec![f64::NEG_INFINITY; count],
+            tie,
         }
     }
 
     pub fn draw(&mut self, number: u32, seen: &[DVec3; 3]) {
         let rows = self.first_row..self.first_row + self.rows as i64;
+        let tie = self.tie;
         let (nearest, near, width, first) = (&mut self.nearest, &mut self.near, self.width, self.first_row);
         spans(seen, width, rows, |y, xs, ramp| {
             let row = (y - first) as usize * width;
             for x in xs {
                 let v = ramp.at(x);
-                if v > near[row + x] {
+                if v > near[row + x] + tie {
                     near[row + x] = v;
                     nearest[row + x] = number;
                 }
@@ -92,7 +102,7 @@ impl Layer {
     /// Empties every sample that `front` covers with something at least as near.
     pub fn hide_behind(&mut self, front: &Layer) {
         for k in 0..self.nearest.len() {
-            if front.nearest[k] != NOTHING && front.near[k] >= self.near[k] {
+            if front.nearest[k] != NOTHING && front.near[k] >= self.near[k] - self.tie {
                 self.nearest[k] = NOTHING;
             }
         }

@@ -121,7 +121,7 @@ impl Studio<'_> {
     }
 
     fn draw(&self, numbers: &[u32], width: usize, rows: Range<i64>) -> Layer {
-        let mut layer = Layer::empty(width, rows);
+        let mut layer = Layer::empty(width, rows, self.look.stage.tie);
         numbers.iter().for_each(|&k| layer.draw(k, &self.look.stage.triangles[k as usize].seen));
         layer
     }

@@ -112,7 +112,7 @@ impl Scene {
 }
 
 /// Centre of the bounding box.
-pub(super) fn middle(item: &Item) -> DVec3 {
+fn middle(item: &Item) -> DVec3 {
     let bounds = item.points().fold(None, |b: Option<(DVec3, DVec3)>, p| match b {
         None => Some((p, p)),
         Some((lo, hi)) => Some((lo.min(p), hi.max(p))),

@@ -1,0 +1,300 @@
+//! Promises of the chirality stage: known hands, mirrored weaves, agreement of draft and solids, meshes.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use weavelock::atlas::{self, Ask, Settings};
+use weavelock::chirality::answer::{Handedness, Hands, WarpIs};
+use weavelock::chirality::{of_assembly, of_weave};
+use weavelock::contact::join;
+use weavelock::spec::{Bounds, ProfileSpec, Shape, Syntax, parse};
+use weavelock::weave::{Draft, Origin, Weave};
+
+fn profile(rise: f64, samples: u32) -> ProfileSpec {
+    ProfileSpec { shape: Shape::Rise(rise), lift: 1.0, cover: 1.0, samples, bounds: Bounds::Sandwich }
+}
+
+fn weave(abc: (u32, u32, i32)) -> Weave {
+    Weave::abc(abc.0, abc.1, abc.2).expect("in bounds")
+}
+
+fn hands(abc: (u32, u32, i32), profile: &ProfileSpec) -> Hands {
+    of_weave(&weave(abc), profile).unwrap_or_else(|e| panic!("{abc:?}: {e}"))
+}
+
+fn words(abc: (u32, u32, i32), profile: &ProfileSpec) -> (Handedness, WarpIs) {
+    let hands = hands(abc, profile);
+    (hands.tile.expect("a weave has a tile"), hands.warp_is.expect("a weave has warps"))
+}
+
+fn assembly(toml: &str) -> Hands {
+    let spec = parse(toml, Path::new("spec.toml"), Syntax::Toml).unwrap_or_else(|f| panic!("{f}"));
+    let joined = join(&spec).unwrap_or_else(|f| panic!("{f}"));
+    of_assembly(&spec, &joined).unwrap_or_else(|e| panic!("{e}"))
+}
+
+fn window(abc: &str, wefts: u32, warps: u32) -> String {
+    format!(
+        "[weave]\nabc = {abc}\n[profile]\nrise = 0.6\nsamples = 6\n[swatch]\nwefts = {wefts}\nwarps = {warps}\ncut = \"window\"\n"
+    )
+}
+
+/// What follows from the draft by hand: phase 0 tiles of `[a,b,c]` are achiral where a = b or 2c = 0 (mod n).
+fn by_hand((a, b, c): (u32, u32, i32)) -> (bool, bool, bool) {
+    let n = (a + b) as i32;
+    let is = |v: i32| v.rem_euclid(n) == 0;
+    (a == b || is(2 * c), is(c * c - 1), is(c * c + 1))
+}
+
+#[test]
+fn tiles_of_the_known_answers() {
+    let at = profile(0.6, 8);
+    assert_eq!(words((1, 1, 1), &at), (Handedness::Achiral, WarpIs::Both));
+    assert_eq!(words((2, 2, 1), &at), (Handedness::Achiral, WarpIs::Both));
+    assert!(matches!(words((3, 1, 1), &at), (Handedness::Left | Handedness::Right, WarpIs::Same)));
+    assert!(matches!(words((4, 1, 2), &at), (Handedness::Left | Handedness::Right, WarpIs::Mirror)));
+    assert!(matches!(words((7, 1, 3), &at), (Handedness::Left | Handedness::Right, WarpIs::Same)));
+}
+
+#[test]
+fn solids_and_draft_agree_with_the_congruences() {
+    for rise in [0.6, 0.0, 1.0, 0.35] {
+        for n in 2..=6_u32 {
+            for (a, c) in (1..n).flat_map(|a| (1..n as i32).map(move |c| (a, c))) {
+                let abc = (a, n - a, c);
+                let (achiral, same, mirror) = by_hand(abc);
+                let (tile, warp) = words(abc, &profile(rise, 4));
+                assert_ne!(
+                    tile,
+                    Handedness::Undecided,
+                    "{abc:?} rise {rise}: {:#?}",
+                    hands(abc, &profile(rise, 4))
+                );
+                assert_eq!(tile == Handedness::Achiral, achiral, "{abc:?} rise {rise}");
+                // The congruences speak of warps that have the wefts' runs: one over and one under in a period.
+                if a == 1 || n - a == 1 || same {
+                    let both = (same && mirror) || (achiral && (same || mirror));
+                    let expected = match (both, same, mirror) {
+                        (true, ..) => WarpIs::Both,
+                        (_, true, _) => WarpIs::Same,
+                        (_, _, true) => WarpIs::Mirror,
+                        _ => WarpIs::Different,
+                    };
+                    assert_eq!(warp, expected, "{abc:?} rise {rise}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn mirrored_weaves_have_opposite_hands() {
+    for (a, b, c) in [(3, 1, 1), (4, 1, 2), (7, 1, 3), (3, 2, 1), (2, 1, 1)] {
+        let [here, there] = [c, -c].map(|c| words((a, b, c), &profile(0.6, 6)).0);
+        assert!([here, there].contains(&Handedness::Left), "[{a},{b},{c}] {here:?} {there:?}");
+        assert!([here, there].contains(&Handedness::Right), "[{a},{b},{c}] {here:?} {there:?}");
+    }
+}
+
+#[test]
+fn hands_stand_under_refinement() {
+    for abc in [(3, 1, 1), (4, 1, 2), (3, 2, 1)] {
+        let at = |samples| words(abc, &profile(0.6, samples));
+        assert_eq!(at(6), at(8));
+        assert_eq!(at(8), at(12));
+    }
+}
+
+#[test]
+fn found_isometries_are_exact_and_as_many_as_the_draft_has() {
+    for abc in [(1, 1, 1), (2, 2, 1), (3, 1, 2), (3, 1, 1)] {
+        let hands = hands(abc, &profile(0.6, 8));
+        for tile in &hands.tiles {
+            let e = &tile.hand.evidence;
+            assert_eq!(Some(e.isometries.len()), e.draft.as_ref().map(Vec::len), "{abc:?} {}", tile.strand);
+            assert!(e.isometries.iter().all(|i| i.residual <= e.within && e.within < 1e-9), "{abc:?}");
+        }
+    }
+}
+
+#[test]
+fn heights_off_the_grid_are_still_decided() {
+    for lift in [0.7, 1.1, 1.0 / 3.0 + 0.5] {
+        let at = ProfileSpec { lift, ..profile(0.6, 8) };
+        assert_eq!(words((2, 2, 1), &at), (Handedness::Achiral, WarpIs::Both), "lift {lift}");
+        assert!(matches!(words((3, 1, 1), &at), (Handedness::Left | Handedness::Right, WarpIs::Same)));
+    }
+}
+
+#[test]
+fn plain_windows_have_a_hand_and_their_mirror_image_the_other() {
+    let here = assembly(&window("[1, 1, 1]", 2, 2));
+    // The same crossings with over and under exchanged.
+    let there = assembly(&window("[1, 1, 1]", 2, 2).replace("abc = [1, 1, 1]", "draft = [\".X\", \"X.\"]"));
+    let hands = [here.assembly, there.assembly];
+    assert!(hands.contains(&Some(Handedness::Left)) && hands.contains(&Some(Handedness::Right)), "{hands:?}");
+    assert_eq!(here.tile, Some(Handedness::Achiral));
+}
+
+#[test]
+fn windows_with_a_mirror_are_achiral() {
+    let hands = assembly(&window("[1, 1, 1]", 3, 2));
+    assert_eq!(hands.assembly, Some(Handedness::Achiral), "{:?}", hands.assembly_evidence);
+}
+
+#[test]
+fn the_answer_survives_json() {
+    let hands = hands((3, 1, 1), &profile(0.6, 6));
+    let text = serde_json::to_string(&hands).expect("serializes");
+    assert_eq!(serde_json::from_str::<Hands>(&text).expect("reads"), hands);
+}
+
+#[test]
+fn twills_have_their_weavers_hand() {
+    let hand = |abc| hands(abc, &profile(0.6, 4)).twill.map(|h| format!("{h:?}"));
+    assert_eq!(hand((2, 2, 1)).as_deref(), Some("Z"));
+    assert_eq!(hand((2, 2, -1)).as_deref(), Some("S"));
+    assert_eq!(hand((1, 1, 1)), None);
+}
+
+fn drawn(rows: &[String]) -> Weave {
+    let rows: Vec<&str> = rows.iter().map(String::as_str).collect();
+    Weave::of_draft(Draft::drawn(&rows).expect("well drawn"), Origin::Drawn)
+}
+
+/// Drafts nobody designed: 4 x 4 crossings from a linear congruential generator (the constants are Knuth's MMIX).
+fn odd_drafts(count: usize) -> Vec<Vec<String>> {
+    let mut state: u64 = 2026;
+    let mut bit = move || {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        if state >> 63 == 1 { 'X' } else { '.' }
+    };
+    (0..count).map(|_| (0..4).map(|_| (0..4).map(|_| bit()).collect()).collect()).collect()
+}
+
+#[test]
+fn odd_drafts_and_their_mirror_images_have_opposite_hands() {
+    let mut undecided = 0;
+    for rows in odd_drafts(12) {
+        let here = of_weave(&drawn(&rows), &profile(0.6, 4));
+        // Mirrored at y: the wefts in reverse, weft 0 staying in place.
+        let turned: Vec<String> =
+            (0..rows.len()).map(|j| rows[(rows.len() - j) % rows.len()].clone()).collect();
+        let there = of_weave(&drawn(&turned), &profile(0.6, 4));
+        let (Ok(here), Ok(there)) = (here, there) else {
+            println!("{rows:?}: tiles cannot be cut");
+            continue;
+        };
+        let expected = match here.tile {
+            Some(Handedness::Left) => Some(Handedness::Right),
+            Some(Handedness::Right) => Some(Handedness::Left),
+            same => same,
+        };
+        assert_eq!(there.tile, expected, "{rows:?}");
+        undecided += usize::from(here.tile == Some(Handedness::Undecided));
+        if here.tile == Some(Handedness::Undecided) {
+            println!("{rows:?}: {:?}", here.tiles[0].hand.why);
+        }
+    }
+    println!("{undecided} of 12 undecided");
+}
+
+#[test]
+fn prisms_and_own_points_have_hands_too() {
+    let prism = ProfileSpec { bounds: Bounds::Prism, ..profile(0.6, 6) };
+    assert_eq!(words((2, 2, 1), &prism), (Handedness::Achiral, WarpIs::Both));
+    assert!(matches!(words((4, 1, 2), &prism), (Handedness::Left | Handedness::Right, WarpIs::Mirror)));
+    // A curve that rises faster than it falls has no reversal; the warp's is its mirror image by convention.
+    let points = vec![[0.0, 0.5], [0.2, 1.0], [0.8, 1.0], [1.3, 0.0], [1.7, 0.0], [2.0, 0.5]];
+    let lame = ProfileSpec { shape: Shape::Points(points), ..profile(0.6, 6) };
+    let (tile, warp) = words((1, 1, 1), &lame);
+    assert_ne!(tile, Handedness::Undecided);
+    assert_ne!(warp, WarpIs::Undecided);
+    println!("lame plain: {tile:?} {warp:?}");
+}
+
+fn folder(name: &str) -> PathBuf {
+    let folder = std::env::temp_dir().join(format!("weavelock-hands-{}-{name}", std::process::id()));
+    let _ = fs::remove_dir_all(&folder);
+    fs::create_dir_all(&folder).expect("a folder for the test");
+    folder
+}
+
+/// Hand of each part and of the whole, for tetrahedra in OBJ files.
+fn meshes(name: &str, objs: &[&str]) -> (Vec<Handedness>, Handedness) {
+    let folder = folder(name);
+    let mut toml = String::from("name = \"solids\"\n");
+    for (k, obj) in objs.iter().enumerate() {
+        fs::write(folder.join(format!("{k}.obj")), obj).expect("written");
+        let at = format!("at = [1,0,0,{}, 0,1,0,0, 0,0,1,0]", 10 * k);
+        toml += &format!("[[part]]\nid = \"p{k}\"\nmesh = \"{k}.obj\"\n{at}\n");
+    }
+    toml += "[contact]\ntolerance = \"0.001 mm\"\n[size]\nunit = \"mm\"\n";
+    let spec = parse(&toml, &folder.join("solids.toml"), Syntax::Toml).unwrap_or_else(|f| panic!("{f}"));
+    let joined = join(&spec).unwrap_or_else(|f| panic!("{f}"));
+    let hands = of_assembly(&spec, &joined).unwrap_or_else(|e| panic!("{e}"));
+    fs::remove_dir_all(&folder).expect("removed");
+    println!(
+        "{name}: {:?}",
+        hands.assembly_evidence.as_ref().map(|e| (&e.why, &e.measure, e.evidence.isometries.len()))
+    );
+    (hands.parts.iter().map(|p| p.hand).collect(), hands.assembly.expect("an assembly"))
+}
+
+const ODD: &str = "v 0 0 0\nv 3 0.2 0.1\nv 0.3 2 0\nv 0.5 0.4 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n";
+const ODD_MIRRORED: &str =
+    "v 0 0 0\nv 3 0.2 -0.1\nv 0.3 2 0\nv 0.5 0.4 -1\nf 1 2 3\nf 1 4 2\nf 2 4 3\nf 1 3 4\n";
+/// A cube cut into triangles by diagonals that no reflection keeps.
+const CUBE: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n\
+f 1 3 2\nf 1 4 3\nf 5 6 7\nf 5 7 8\nf 1 2 6\nf 1 6 5\nf 2 3 7\nf 2 7 6\nf 3 4 8\nf 3 8 7\nf 4 1 5\nf 4 5 8\n";
+
+#[test]
+fn meshes_have_hands_and_a_cube_has_none() {
+    let (parts, pair) = meshes("pair", &[ODD, ODD_MIRRORED]);
+    assert!(parts.contains(&Handedness::Left) && parts.contains(&Handedness::Right), "{parts:?}");
+    // Mirrored across z and 10 apart along x: no isometry exchanges them, none keeps them.
+    assert!(matches!(pair, Handedness::Left | Handedness::Right), "{pair:?}");
+    assert_eq!(meshes("cube", &[CUBE]), (vec![Handedness::Achiral], Handedness::Achiral));
+    assert_eq!(meshes("cubes", &[CUBE, CUBE]).1, Handedness::Achiral);
+}
+
+fn small() -> Ask {
+    Ask { max_n: 4, most: 2, settings: Settings { samples: 4, ..Settings::default() } }
+}
+
+fn bytes(folder: &Path) -> [Vec<u8>; 2] {
+    ["atlas.jsonl", "atlas.csv"].map(|name| fs::read(folder.join(name)).expect("written"))
+}
+
+#[test]
+fn the_atlas_is_the_same_with_any_threads_and_after_a_stop() {
+    let [one, many, torn] = ["one", "many", "torn"].map(folder);
+    for (folder, threads) in [(&one, 1), (&many, 3)] {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
+        let written =
+            pool.install(|| atlas::write(&small(), folder, |_| ())).unwrap_or_else(|f| panic!("{f}"));
+        assert_eq!((written.found, written.rows.len()), (0, atlas::weaves(4).len()));
+    }
+    assert_eq!(bytes(&one), bytes(&many));
+    // Stopped in the middle of the third row.
+    let whole = bytes(&one)[0].clone();
+    let third = whole.iter().enumerate().filter(|b| *b.1 == b'\n').nth(1).expect("rows").0 + 20;
+    fs::write(torn.join("atlas.jsonl"), &whole[..third]).expect("written");
+    let written = atlas::write(&small(), &torn, |_| ()).unwrap_or_else(|f| panic!("{f}"));
+    assert_eq!(written.found, 2);
+    assert_eq!(bytes(&one), bytes(&torn));
+    // Another table is refused and left alone.
+    let other = Ask { most: 3, ..small() };
+    assert!(atlas::write(&other, &torn, |_| ()).is_err());
+    assert_eq!(bytes(&one), bytes(&torn));
+    println!("{}", String::from_utf8_lossy(&bytes(&one)[1]));
+    for folder in [one, many, torn] {
+        fs::remove_dir_all(folder).expect("removed");
+    }
+}
+
+#[test]
+fn the_atlas_holds_the_known_answers() {
+    assert_eq!(atlas::weaves(4), [(1, 1, 1), (2, 1, 1), (2, 2, 1), (3, 1, 1)]);
+    let least = |abc| atlas::row(abc, &Ask::new(8)).unwrap_or_else(|f| panic!("{f}")).minimal_repeat;
+    assert_eq!([(1, 1, 1), (2, 2, 1)].map(least), [Some(2), Some(2)]);
+}
