@@ -1,7 +1,12 @@
 //! What may not change a verdict, whatever it is:
 //!
-//! 1. which part is taken as fixed, 2. turning, 3. mirroring, 4. scaling, 5. moving away, 6. the order of parts and
-//! patches, 7. cutting a patch in two.
+//! 1. which part is taken as fixed,
+//! 2. turning,
+//! 3. mirroring,
+//! 4. scaling,
+//! 5. moving away,
+//! 6. the order of parts and patches,
+//! 7. cutting a patch in two.
 //!
 //! Each law is tried on woven swatches and on small assemblies at the edge: those that only slide, that only turn, and
 //! that only move several ways at once.

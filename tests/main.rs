@@ -3,6 +3,7 @@
 mod bad_input;
 mod certificates;
 mod fab;
+mod cli;
 mod golden;
 mod hands;
 mod known;

@@ -56,7 +56,7 @@ fn square(a: usize, b: usize, at: Voxel, axis: usize) -> Patch {
     Patch { a, b, normal: unit(axis), corners: vec![p, p + u, p + u + v, p + v] }
 }
 
-/// Cells given to parts that grow from a random cell each; a cell in `dense` of 4 stays empty.
+/// Cells given to parts that grow from a random cell each; about `dense` in 4 cells are filled.
 fn grown(
     dice: &mut Dice,
     cells: usize,
@@ -79,13 +79,26 @@ fn grown(
     owner
 }
 
+/// Cells given to parts at random: parts in many pieces, caught in each other.
+fn scattered(dice: &mut Dice, cells: usize, count: usize, dense: usize) -> Vec<Option<usize>> {
+    (0..cells).map(|_| (dice.below(4) < dense).then(|| dice.below(count))).collect()
+}
+
+fn given(dice: &mut Dice, beside: &[Vec<usize>], count: usize, dense: usize) -> Vec<Option<usize>> {
+    match dice.below(2) {
+        0 => grown(dice, beside.len(), beside, count, dense),
+        _ => scattered(dice, beside.len(), count, dense),
+    }
+}
+
+/// None, or each by the toss of a coin; always one free.
 fn random_held(dice: &mut Dice, count: usize) -> Vec<bool> {
-    let some = dice.below(3);
-    (0..count).map(|k| k < some && some < count).collect()
+    let (some, free) = (dice.below(2) == 0, dice.below(count));
+    (0..count).map(|k| some && k != free && dice.below(2) == 0).collect()
 }
 
 fn random_voxels(dice: &mut Dice) -> Made {
-    let size = [0; 3].map(|_| 2 + dice.below(3) as i32);
+    let size = [2, 1, 1].map(|least| least + dice.below(3) as i32);
     let at = |k: usize| {
         let k = k as i32;
         [k % size[0], k / size[0] % size[1], k / size[0] / size[1]]
@@ -94,15 +107,15 @@ fn random_voxels(dice: &mut Dice) -> Made {
     let near = |i: usize, j: usize| (point(at(i)) - point(at(j))).length() == 1.0;
     let beside: Vec<Vec<usize>> = (0..cells).map(|i| (0..cells).filter(|&j| near(i, j)).collect()).collect();
     let count = 2 + dice.below(4);
-    let dense = 2 + dice.below(3);
-    let owner = grown(dice, cells, &beside, count, dense);
+    let dense = 3 + dice.below(2);
+    let owner = given(dice, &beside, count, dense);
     let owner = owner.into_iter().enumerate().filter_map(|(k, o)| Some((at(k), o?))).collect();
     voxels(&owner, &random_held(dice, count))
 }
 
 /// A block of cubes, each cut into six tetrahedra about its diagonal; corners moved by whole sixteenths.
 fn random_tetrahedra(dice: &mut Dice) -> Made {
-    let size = [0; 3].map(|_| 1 + dice.below(2) as i32);
+    let size = [2, 1 + dice.below(2) as i32, 1 + dice.below(2) as i32];
     let mut corner: BTreeMap<Voxel, DVec3> = BTreeMap::new();
     let mut tetrahedra: Vec<[Voxel; 4]> = Vec::new();
     for (x, y, z) in
@@ -118,9 +131,8 @@ fn random_tetrahedra(dice: &mut Dice) -> Made {
         }
     }
     for v in tetrahedra.iter().flatten() {
-        corner
-            .entry(*v)
-            .or_insert_with(|| point(*v) + [0.0; 3].map(|_| (dice.signed() * 4.0).round() / 16.0).into());
+        let by = [0.0; 3].map(|_: f64| (dice.signed() * 4.0).round() / 16.0);
+        corner.entry(*v).or_insert(point(*v) + DVec3::from_array(by));
     }
     between_tetrahedra(dice, &tetrahedra, &corner)
 }
@@ -141,7 +153,7 @@ fn between_tetrahedra(dice: &mut Dice, tetrahedra: &[[Voxel; 4]], corner: &BTree
     }
     let count = 2 + dice.below(3);
     let dense = 3 + dice.below(2);
-    let owner = grown(dice, tetrahedra.len(), &beside, count, dense);
+    let owner = given(dice, &beside, count, dense);
     let mut vertices = vec![Vec::new(); count];
     for (t, o) in tetrahedra.iter().zip(&owner) {
         o.iter().for_each(|&o| vertices[o].extend(t.iter().map(|v| corner[v])));

@@ -101,7 +101,8 @@ fn widest(rows: &[Row], columns: usize) -> Option<f64> {
         terms.push((opening, -1.0));
         problem.add_constraint(terms, ComparisonOp::Ge, 0.0);
     }
-    problem.solve().ok().map(|s| s.objective())
+    let outcome = problem.solve().ok()?;
+    outcome.is_optimal().then(|| outcome.solution().map(|s| s.objective())).flatten()
 }
 
 /// Rank by elimination with full pivoting; none where a pivot is neither zero nor not.

@@ -26,14 +26,6 @@ pub fn tiles(abc: [i32; 3], samples: u32, n: u32, repeat: u32, phase: i32) -> St
     woven(abc, samples, &format!("[swatch]\n{swatch}"))
 }
 
-/// Pieces one by one: kind, index, from, to.
-pub fn pieces(abc: [i32; 3], samples: u32, list: &[(&str, i32, i32, i32)]) -> String {
-    let piece = |&(kind, index, from, to): &(&str, i32, i32, i32)| {
-        format!("[[piece]]\n{kind} = {index}\nfrom = {from}\nto = {to}\n")
-    };
-    woven(abc, samples, &list.iter().map(piece).collect::<String>())
-}
-
 pub fn joined(text: &str) -> Joined {
     let spec = parse(text, Path::new("test.toml"), Syntax::Toml).unwrap_or_else(|f| panic!("{f}\n{text}"));
     join(&spec).unwrap_or_else(|f| panic!("{f}\n{text}"))
