@@ -12,6 +12,7 @@ use glam::DVec3;
 const SMALLER: &str = "take a smaller clearance, a larger pitch, or a shape with thicker walls there";
 const CROSSING: &str =
     "take a smaller clearance, and look whether the solid that came in crosses itself there already";
+const BODIES: &str = "take a smaller clearance; where the solid that came in has several bodies already, give each an id of its own";
 const OURS: &str = "this is a fault of the program: please report it with the input";
 
 fn error(id: &str, at: Vec<DVec3>, what: String, remedy: &str) -> Finding {
@@ -47,8 +48,8 @@ pub fn of_mesh(id: &str, master: &Mesh, scale: &Scale) -> Vec<Finding> {
     let topology = master.topology();
     if topology.bodies != 1 {
         let what =
-            format!("the clearance leaves {} bodies; nothing is written for the part", topology.bodies);
-        found.push(error(id, vec![], what, SMALLER));
+            format!("the part as made is {} bodies, not one; nothing is written for it", topology.bodies);
+        found.push(error(id, vec![], what, BODIES));
     }
     found
 }
