@@ -43,7 +43,7 @@ impl Cell {
                 .iter()
                 .map(|&(n, d)| {
                     let m = pose.transform_vector3(n);
-                    (m, d + m.dot(pose.translation.into()))
+                    (m, d + m.dot(pose.translation))
                 })
                 .collect(),
         }

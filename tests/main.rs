@@ -2,8 +2,8 @@
 
 mod bad_input;
 mod certificates;
-mod fab;
 mod cli;
+mod fab;
 mod golden;
 mod hands;
 mod known;

@@ -120,7 +120,7 @@ fn open_edges(cut: impl Iterator<Item = [u32; 3]>) -> Vec<[u32; 2]> {
 
 fn wall(rank: Grid, k: usize) -> Neighbour {
     let mut at = [0; 3];
-    at[k / 2] = if k % 2 == 0 { WALL } else { -WALL };
+    at[k / 2] = if k.is_multiple_of(2) { WALL } else { -WALL };
     Neighbour { at, rank: [0, 1, 2].map(|d| rank[d] + at[d]) }
 }
 
