@@ -52,6 +52,9 @@ pub enum Verb {
         /// Only these parts; the others are not there: `--of weft-0,weft-1,warp-0`
         #[arg(long, value_name = "PARTS", value_delimiter = ',')]
         of: Vec<String>,
+        /// Air on each face of a contact, as "0.5 mm": plans for parts made with that clearance
+        #[arg(long, value_name = "LENGTH", value_parser = length)]
+        clearance: Option<f64>,
     },
     /// Does it need flexible parts? The fewest, which, and the bound's proof
     Flex { file: PathBuf },
@@ -154,4 +157,9 @@ pub enum Together {
     Parts,
     /// One file
     Whole,
+}
+
+/// A length with its unit, in mm.
+fn length(text: &str) -> Result<f64, String> {
+    crate::spec::length_mm(text)
 }

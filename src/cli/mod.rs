@@ -41,7 +41,9 @@ fn dispatch(args: &Args) -> Result<Told, Trouble> {
         None => run::example(&args.common),
         Some(Verb::Run { file, out }) => run::file(file, out, &args.common),
         Some(Verb::Check { file, fix }) => questions::check(&load::spec(file)?.joined()?, fix.as_deref()),
-        Some(Verb::Plan { file, of }) => questions::plan(&load::spec(file)?.joined()?, of),
+        Some(Verb::Plan { file, of, clearance }) => {
+            questions::plan(&load::spec(file)?.joined()?, of, clearance.unwrap_or(0.0))
+        }
         Some(Verb::Flex { file }) => questions::flex(&load::spec(file)?.joined()?),
         Some(Verb::Repeats(asked)) => questions::repeats(asked),
         Some(Verb::Chirality { subject }) => questions::chirality(subject),

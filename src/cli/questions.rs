@@ -21,6 +21,7 @@ use crate::repeats::{self, Search};
 use crate::report::answer::{self, Certificate, FlexAnswer, PlanAnswer, RepeatsAnswer, Sealed};
 use crate::report::file::write_whole;
 use crate::report::words as chapters;
+use crate::sequence::clearance::with_clearance;
 use crate::sequence::{self, Outcome, Plan, Searched};
 use crate::spec::{self, Bounds, ProfileSpec, Shape};
 use crate::verify;
@@ -58,34 +59,33 @@ fn argument(what: String, hint: String) -> Fault {
     Fault { file: String::new(), place: None, key: String::new(), what, hint }
 }
 
-/// The plan, each stuck set with the proof of its lock where it is locked.
-pub fn planned(placed: &Placed, of: &[PartIx]) -> PlanAnswer {
+/// The plan for these parts, made with `clearance_mm` of air on each face of a contact. At no clearance each set that
+/// stays together comes with the proof of its lock, where it is locked.
+pub fn planned(placed: &Placed, of: &[PartIx], clearance_mm: f64) -> PlanAnswer {
     let joined = &placed.joined;
     let (asm, patches) = (&joined.assembly, &joined.patches);
-    let lock = |set: &[PartIx]| locked(joined, set);
-    match sequence::plan_of(asm, of, patches, lock) {
-        Ok(plan) => answer::plan(joined, plan, of, placed.source.clone()),
-        Err(why) => {
-            // Nothing was searched: an honest "not found", with the reason among the remarks.
-            let none = Plan {
-                outcome: Outcome::NotFound,
-                order: sequence::Order::Disassembly,
-                steps: Vec::new(),
-                stuck: Vec::new(),
-                searched: Searched::default(),
-                touch: 0.0,
-            };
-            let mut with_reason = Joined { remarks: joined.remarks.clone(), ..shallow(joined) };
-            with_reason.remarks.push(format!("no plan was searched: {why}"));
-            answer::plan(&with_reason, none, of, placed.source.clone())
-        }
-    }
+    let found = if clearance_mm > 0.0 {
+        with_clearance(asm, patches, clearance_mm / asm.mm_per_unit)
+            .map_err(|e| e.to_string())
+            .and_then(|made| sequence::plan_of(&made, of, &[], |_| None).map_err(|e| e.to_string()))
+    } else {
+        sequence::plan_of(asm, of, patches, |set| locked(joined, set)).map_err(|e| e.to_string())
+    };
+    let (plan, why) = found.map_or_else(|why| (nothing(), Some(why)), |plan| (plan, None));
+    let remarks = why.map(|why| format!("no plan was searched: {why}"));
+    answer::plan(joined, plan, of, clearance_mm, remarks, placed.source.clone())
 }
 
-/// The names and parts of an assembly, without its contacts.
-fn shallow(joined: &Joined) -> Joined {
-    let origin = crate::contact::Origin::Meshes;
-    Joined { assembly: joined.assembly.clone(), patches: Vec::new(), origin, remarks: Vec::new() }
+/// The plan of a search that was not made: not found, an honest answer with its reason among the remarks.
+fn nothing() -> Plan<Certificate> {
+    Plan {
+        outcome: Outcome::NotFound,
+        order: sequence::Order::Disassembly,
+        steps: Vec::new(),
+        stuck: Vec::new(),
+        searched: Searched::default(),
+        touch: 0.0,
+    }
 }
 
 fn locked(joined: &Joined, set: &[PartIx]) -> Option<Certificate> {
@@ -96,7 +96,7 @@ fn locked(joined: &Joined, set: &[PartIx]) -> Option<Certificate> {
     Some(answer::certificate(asm, &still, &stress))
 }
 
-pub fn plan(placed: &Placed, of: &[String]) -> Result<Told, Trouble> {
+pub fn plan(placed: &Placed, of: &[String], clearance_mm: f64) -> Result<Told, Trouble> {
     let joined = &placed.joined;
     let mut parts = of.iter().map(|id| part(joined, id.trim())).collect::<Result<Vec<_>, _>>()?;
     if parts.is_empty() {
@@ -104,7 +104,7 @@ pub fn plan(placed: &Placed, of: &[String]) -> Result<Told, Trouble> {
     }
     parts.sort_unstable();
     parts.dedup();
-    Ok(told_plan(placed, &planned(placed, &parts)))
+    Ok(told_plan(placed, &planned(placed, &parts, clearance_mm)))
 }
 
 pub fn told_plan(placed: &Placed, answer: &PlanAnswer) -> Told {

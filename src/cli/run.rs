@@ -80,7 +80,7 @@ fn ask(placed: &Placed, common: &Common) -> Result<Asked, Trouble> {
     let check = questions::told_check(placed, &check);
     progress("how does it go together");
     let all: Vec<PartIx> = asm.ids().collect();
-    let plan = questions::told_plan(placed, &questions::planned(placed, &all));
+    let plan = questions::told_plan(placed, &questions::planned(placed, &all, 0.0));
     progress("does it need a flexible part");
     let flex = if asm.parts.len() <= MOST_PARTS_FOR_FLEX {
         questions::flexed(placed).map(|a| questions::told_flex(&a)).map_err(|t| t.to_string())
@@ -157,7 +157,10 @@ fn everything(loaded: Loaded, out: &Path, common: &Common) -> Result<Told, Troub
         files.push(path.display().to_string());
         Ok(())
     };
-    for (verb, told) in asked.all().into_iter().chain([("fab", &fab)]) {
+    let as_made = plan_as_made(&placed, &asked, made.clearance.value);
+    let more = [("fab", Some(&fab)), ("plan-as-made", as_made.as_ref())];
+    let more = more.into_iter().filter_map(|(name, told)| Some((name, told?)));
+    for (verb, told) in asked.all().into_iter().chain(more) {
         keep(&format!("{verb}.json"), format!("{}\n", told.json).as_bytes())?;
     }
     for (k, picture) in asked.pictures.iter().enumerate() {
@@ -167,7 +170,14 @@ fn everything(loaded: Loaded, out: &Path, common: &Common) -> Result<Told, Troub
     }
     let parts = Answer::Given(make::fab_chapter(&made, &folder));
     keep("report.html", page(&input(&placed, &asked, parts)).as_bytes())?;
-    Ok(summary(&placed, asked, fab, files, out))
+    Ok(summary(&placed, asked, as_made, fab, files, out))
+}
+
+/// Where the parts as they touch do not go together: whether they do with the clearance that they are made with.
+fn plan_as_made(placed: &Placed, asked: &Asked, clearance_mm: f64) -> Option<Told> {
+    let all: Vec<PartIx> = placed.joined.assembly.ids().collect();
+    (asked.plan.news == News::Other && clearance_mm > 0.0)
+        .then(|| questions::told_plan(placed, &questions::planned(placed, &all, clearance_mm)))
 }
 
 /// Finds out before the work whether the folder can be written to.
@@ -205,7 +215,7 @@ fn chapter(told: &Result<Told, String>) -> Answer<Chapter> {
 const LIMITS: [&str; 4] = [
     "Molds, castings and their sheets are not built yet; parts with clearance and allowance are.",
     "Plans are straight moves of parts and groups; turns and moves in several stretches are not searched.",
-    "Locked is first order at zero clearance; at what clearance a lock opens is not computed yet.",
+    "Locked is first order at zero clearance; the least clearance that opens a lock is not searched for yet.",
     "The tiles are those of the sampled sites; a certificate is not yet held against the curved bisectors.",
 ];
 
@@ -263,14 +273,21 @@ struct RunAnswer<'a> {
     files: Vec<String>,
 }
 
-fn summary(placed: &Placed, asked: Asked, fab: Told, files: Vec<String>, out: &Path) -> Told {
+fn summary(
+    placed: &Placed,
+    asked: Asked,
+    as_made: Option<Told>,
+    fab: Told,
+    files: Vec<String>,
+    out: &Path,
+) -> Told {
     let verdict = match asked.check.news {
         News::Good => answer::Word::Locked,
         News::Other => words::verdict_word(&asked.check.json),
     };
     let news = News::of(asked.check.news == News::Good && fab.news == News::Good);
     let answer = RunAnswer { verb: "run", name: &placed.spec.name, verdict, files };
-    let chapters = vec![
+    let mut chapters = vec![
         ("Does it lock?".to_string(), first_chapter(&asked.check)),
         ("How it goes together".into(), first_chapter(&asked.plan)),
         ("Flexible parts".into(), chapter(&asked.flex)),
@@ -278,6 +295,7 @@ fn summary(placed: &Placed, asked: Asked, fab: Told, files: Vec<String>, out: &P
         ("Hands".into(), chapter(&asked.chirality)),
         ("Parts as made".into(), first_chapter(&fab)),
     ];
+    chapters.extend(as_made.map(|told| ("How it goes together as made".into(), first_chapter(&told))));
     let page: PathBuf = out.join("report.html");
     let closing = vec![
         format!(

@@ -25,6 +25,11 @@ use glam::DAffine3;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
+/// A length written with its unit, as "0.5 mm", in mm.
+pub fn length_mm(text: &str) -> Result<f64, String> {
+    units::millimetres(text).map_err(|_| "write a length with its unit, as \"0.5 mm\"".into())
+}
+
 /// What a spec file asks for.
 #[derive(Clone, Debug)]
 pub struct Spec {

@@ -7,11 +7,12 @@ pub mod certificate;
 mod field;
 pub mod plan;
 
-use crate::assembly::PartIx;
+use crate::assembly::{Assembly, PartIx};
 use crate::contact::{self, Joined};
 use crate::fault::Faults;
 use crate::report::answer::{self, CheckAnswer, PlanAnswer, Sealed, Source};
 use crate::sequence::Outcome;
+use crate::sequence::clearance::with_clearance;
 use crate::spec::{self, Syntax};
 use certificate::About;
 use schemars::JsonSchema;
@@ -78,9 +79,9 @@ fn check(joined: &Joined, a: &CheckAnswer) -> Result<(), String> {
 fn plan(joined: &Joined, a: &PlanAnswer) -> Result<(), String> {
     sealed(&a.checksum, &PlanAnswer { checksum: String::new(), ..a.clone() })?;
     same("verb", a.verb.as_str(), "plan")?;
-    let asm = &joined.assembly;
     let parts = parts(joined, &a.of)?;
-    match plan::check_of(asm, &parts, &a.plan) {
+    let made = as_made(joined, a.clearance_mm)?;
+    match plan::check_of(&made, &parts, &a.plan) {
         plan::Checked::Valid { .. } => {}
         plan::Checked::Invalid { step, parts, why, .. } => {
             return Err(format!("step {}: {}: {why}", step + 1, parts.join(", ")));
@@ -89,6 +90,7 @@ fn plan(joined: &Joined, a: &PlanAnswer) -> Result<(), String> {
     }
     for stuck in &a.plan.stuck {
         if let Some(lock) = &stuck.lock {
+            same("clearance of a lock", a.clearance_mm, 0.0)?;
             locked_alone(joined, &stuck.parts, lock)?;
         }
     }
@@ -99,6 +101,15 @@ fn plan(joined: &Joined, a: &PlanAnswer) -> Result<(), String> {
         | (Outcome::NotFound, false, false) => Ok(()),
         (outcome, ..) => Err(format!("the outcome {outcome:?} does not follow from what stayed together")),
     }
+}
+
+/// The assembly that a plan at a clearance is about.
+fn as_made(joined: &Joined, clearance_mm: f64) -> Result<Assembly, String> {
+    let asm = &joined.assembly;
+    if clearance_mm == 0.0 {
+        return Ok(asm.clone());
+    }
+    with_clearance(asm, &joined.patches, clearance_mm / asm.mm_per_unit).map_err(|e| e.to_string())
 }
 
 /// The certificate is about these parts alone: all others are still, and contacts with them do not count.

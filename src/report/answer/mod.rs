@@ -137,6 +137,8 @@ pub struct PlanAnswer {
     pub plan: Plan<Certificate>,
     /// The parts planned for; others were left out.
     pub of: Vec<String>,
+    /// Air on each face of a contact, mm; 0: the parts as they touch.
+    pub clearance_mm: f64,
     pub remarks: Vec<String>,
     pub source: Source,
     pub checksum: String,
@@ -176,14 +178,23 @@ pub fn check(joined: &Joined, check: &Check, source: Source) -> CheckAnswer {
     CheckAnswer { checksum: checksum(&answer), ..answer }
 }
 
-pub fn plan(joined: &Joined, plan: Plan<Certificate>, of: &[PartIx], source: Source) -> PlanAnswer {
+pub fn plan(
+    joined: &Joined,
+    plan: Plan<Certificate>,
+    of: &[PartIx],
+    clearance_mm: f64,
+    remark: Option<String>,
+    source: Source,
+) -> PlanAnswer {
     let assembly = &joined.assembly;
+    let remarks = joined.remarks.iter().cloned().chain(remark).collect();
     let answer = PlanAnswer {
         verb: "plan".into(),
         name: assembly.name.clone(),
         plan,
         of: ids(assembly, of),
-        remarks: joined.remarks.clone(),
+        clearance_mm,
+        remarks,
         source,
         checksum: String::new(),
     };
