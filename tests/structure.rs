@@ -20,7 +20,7 @@ const FLOW: [&[&str]; 16] = [
     &["sequence"],
     &["repeats", "flex", "chirality", "fabricate"],
     &["report"],
-    &["verify"],
+    &["verify", "atlas"],
     &["cli"],
     &["main"],
 ];
