@@ -4,16 +4,15 @@
 //! the claim itself, computed here again.
 
 use crate::laws::degenerate;
-use crate::support::{Dice, source, tiles, window};
+use crate::support::{Dice, plan_answer, source, tiles, window};
 use glam::{DQuat, DVec3};
 use serde_json::{Number, Value};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 use weavelock::assembly::PartIx;
 use weavelock::contact::{Joined, join};
-use weavelock::locking::{Verdict, check, check_some};
+use weavelock::locking::check;
 use weavelock::report::answer::{self, Certificate, ForceAnswer, Sealed};
-use weavelock::sequence::plan;
 use weavelock::spec::{Syntax, parse};
 use weavelock::verify;
 use weavelock::verify::certificate::{About, certificate};
@@ -38,14 +37,7 @@ fn checked(name: &'static str, file: &str, text: &str) -> Answer {
 
 fn planned(name: &'static str, text: &str) -> Answer {
     let joined = built("test.toml", text);
-    let (asm, patches) = (&joined.assembly, &joined.patches);
-    let prove = |set: &[PartIx]| match check_some(asm, patches, set) {
-        Verdict::Locked(stress) => Some(answer::certificate(asm, &set[..1], &stress)),
-        _ => None,
-    };
-    let found = plan(asm, patches, prove).expect("cells");
-    let all: Vec<PartIx> = asm.ids().collect();
-    let answer = answer::plan(&joined, found, &all, source("test.toml", text));
+    let answer = plan_answer(&joined, source("test.toml", text));
     Answer { name, json: serde_json::to_value(answer).expect("JSON"), joined }
 }
 

@@ -1,21 +1,14 @@
 //! The same bytes out for the same input, with any number of threads.
 
-use crate::support::{joined, source, tiles, window};
-use weavelock::locking::{check, check_some};
+use crate::support::{joined, plan_answer, source, tiles, window};
+use weavelock::locking::check;
 use weavelock::report::answer;
-use weavelock::sequence::plan;
 
 fn written(text: &str) -> String {
     let joined = joined(text);
     let (asm, patches) = (&joined.assembly, &joined.patches);
     let checked = answer::check(&joined, &check(asm, patches, None), source("test.toml", text));
-    let prove = |set: &[_]| match check_some(asm, patches, set) {
-        weavelock::locking::Verdict::Locked(stress) => Some(answer::certificate(asm, &set[..1], &stress)),
-        _ => None,
-    };
-    let planned = plan(asm, patches, prove).expect("cells");
-    let all: Vec<_> = asm.ids().collect();
-    let planned = answer::plan(&joined, planned, &all, source("test.toml", text));
+    let planned = plan_answer(&joined, source("test.toml", text));
     let json = |e: serde_json::Result<String>| e.expect("JSON");
     json(serde_json::to_string(&checked)) + &json(serde_json::to_string(&planned))
 }

@@ -3,8 +3,9 @@
 use std::path::Path;
 use weavelock::assembly::{Assembly, PartIx};
 use weavelock::contact::{Joined, Origin, Patch, join};
-use weavelock::locking::{Check, check};
-use weavelock::report::answer::Source;
+use weavelock::locking::{Check, Verdict, check, check_some};
+use weavelock::report::answer::{self, PlanAnswer, Source};
+use weavelock::sequence::plan;
 use weavelock::spec::{Syntax, parse};
 
 /// The file of a woven assembly with the known answers' profile; `layout` is its last tables.
@@ -89,4 +90,16 @@ impl Dice {
 
 pub fn source(file: &str, text: &str) -> Source {
     Source { file: file.into(), text: text.into() }
+}
+
+/// The plan of all parts as they touch, as `plan` writes it.
+pub fn plan_answer(joined: &Joined, source: Source) -> PlanAnswer {
+    let (asm, patches) = (&joined.assembly, &joined.patches);
+    let prove = |set: &[PartIx]| match check_some(asm, patches, set) {
+        Verdict::Locked(stress) => Some(answer::certificate(asm, &set[..1], &stress)),
+        _ => None,
+    };
+    let found = plan(asm, patches, prove).expect("cells");
+    let all: Vec<PartIx> = asm.ids().collect();
+    answer::plan(joined, found, &all, 0.0, None, source)
 }
