@@ -32,7 +32,7 @@ pub fn build(spec: &Spec, woven: &WovenSpec) -> Result<Woven, Faults> {
     let ids = ids(&pieces);
     let held = held(spec, woven, &pieces, &ids)?;
     let profile_fault = |what: String| {
-        let hint = "change rise, lift, cover or samples in [profile]";
+        let hint = "change [profile]: a wider rise or a lower lift keeps a strand clear of itself, more samples follow it closer";
         Faults::from(spec.fault("profile", what, hint))
     };
     let sites = Sites::new(&woven.weave, &woven.profile).map_err(|e| profile_fault(e.to_string()))?;

@@ -109,7 +109,10 @@ pub fn plan(placed: &Placed, of: &[String], clearance_mm: f64) -> Result<Told, T
 
 pub fn told_plan(placed: &Placed, answer: &PlanAnswer) -> Told {
     let news = News::of(answer.plan.outcome == Outcome::Assembled);
-    let chapter = chapters::plan(&placed.joined.assembly, &answer.plan);
+    let mut chapter = chapters::plan(&placed.joined.assembly, &answer.plan);
+    chapter
+        .facts
+        .insert(0, ("clearance".into(), format!("{} mm on each face of a contact", answer.clearance_mm)));
     Told {
         remarks: answer.remarks.clone(),
         ..Told::new(news, answer, &answer.name, "How it goes together", chapter)

@@ -44,7 +44,7 @@ pub struct Stress {
     /// Largest component of the forces' sum over any unknown.
     pub residual: f64,
     /// The smallest pivot of the rows' Gram matrix over its largest: how far the rank is from falling.
-    pub smallest_pivot: f64,
+    pub pivot_ratio: f64,
 }
 
 /// A force of `size` along a row's normal.
@@ -86,7 +86,7 @@ fn undecided(why: impl Into<String>, size: f64) -> Verdict {
 /// Locked, free or undecided over these rows.
 pub fn decide(rows: &[Row], unknowns: &Unknowns) -> Verdict {
     if unknowns.count == 0 {
-        return Verdict::Locked(Stress { forces: Vec::new(), rank: 0, residual: 0.0, smallest_pivot: 1.0 });
+        return Verdict::Locked(Stress { forces: Vec::new(), rank: 0, residual: 0.0, pivot_ratio: 1.0 });
     }
     let mut chosen = first_rows(rows, unknowns);
     loop {
@@ -245,7 +245,7 @@ fn balance(rows: &[Row], unknowns: &Unknowns, mut y: Vec<f64>) -> Balanced {
         });
     }
     let forces = rows.iter().zip(&y).map(|(&row, &size)| Force { row, size }).collect();
-    Balanced::Stress(Stress { forces, rank: factor.rank, residual, smallest_pivot: factor.smallest_pivot })
+    Balanced::Stress(Stress { forces, rank: factor.rank, residual, pivot_ratio: factor.pivot_ratio })
 }
 
 /// The motion with its nearly unmoved rows brought to exactly zero (to round-off), if it then keeps every row.

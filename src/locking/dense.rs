@@ -11,7 +11,8 @@ pub struct Cholesky {
     l: Vec<f64>,
     order: Vec<usize>,
     pub rank: usize,
-    pub smallest_pivot: f64,
+    /// Smallest pivot over the largest; 1 where there is none.
+    pub pivot_ratio: f64,
 }
 
 /// Lower bound on the relative size of a pivot that counts: forming and factoring a Gram matrix of m rows and n
@@ -24,7 +25,7 @@ impl Cholesky {
     /// Factors the full `n` x `n` matrix `g` (row by row); pivots at or below `least` end it.
     pub fn new(mut g: Vec<f64>, n: usize, least: f64) -> Cholesky {
         let mut order: Vec<usize> = (0..n).collect();
-        let (mut rank, mut smallest_pivot) = (0, f64::INFINITY);
+        let (mut rank, mut pivot_ratio, mut first) = (0, 1.0, 0.0);
         for k in 0..n {
             let best = (k..n).max_by(|&i, &j| g[i * n + i].total_cmp(&g[j * n + j])).unwrap_or(k);
             let pivot = g[best * n + best];
@@ -33,11 +34,13 @@ impl Cholesky {
             }
             swap(&mut g, n, k, best);
             order.swap(k, best);
-            smallest_pivot = smallest_pivot.min(pivot);
+            // Pivots fall, so the first one is the largest.
+            first = if k == 0 { pivot } else { first };
+            pivot_ratio = pivot / first;
             eliminate(&mut g, n, k);
             rank = k + 1;
         }
-        Cholesky { n, l: g, order, rank, smallest_pivot }
+        Cholesky { n, l: g, order, rank, pivot_ratio }
     }
 
     /// Solves G x = b on the pivot columns; the other components of x are 0.

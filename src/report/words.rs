@@ -50,7 +50,7 @@ fn locked(assembly: &Assembly, check: &Check, stress: &Stress) -> Chapter {
             fact("self-stress", forces),
             fact("rank", format!("{} of {unknowns}", stress.rank)),
             fact("left unbalanced", format!("{} at most (round-off)", scientific(stress.residual))),
-            fact("rank's distance from falling", format!("{} (smallest pivot over largest)", scientific(stress.smallest_pivot))),
+            fact("rank's distance from falling", format!("{} (smallest pivot over largest)", scientific(stress.pivot_ratio))),
         ],
         ..Chapter::default()
     }

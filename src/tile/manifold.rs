@@ -12,9 +12,9 @@ use std::collections::HashMap;
 pub enum NotASolid {
     #[error("it has no facets")]
     Empty,
-    #[error("the edge from {0} to {1} does not separate exactly two facets")]
+    #[error("it meets itself along the edge from {0} to {1}")]
     Edge(DVec3, DVec3),
-    #[error("the facets around {0} meet in that point alone")]
+    #[error("it meets itself in the point {0}")]
     Vertex(DVec3),
     #[error("Euler's number is {0}, but 2 for a body without holes")]
     Genus(i64),
