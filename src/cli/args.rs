@@ -2,6 +2,11 @@
 //!
 //! Not promised: that files exist or hold what they should; the verbs find out.
 
+#![allow(
+    rustdoc::broken_intra_doc_links,
+    reason = "these texts are help for a terminal; brackets are no links"
+)]
+
 use clap::{Args as ClapArgs, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
 

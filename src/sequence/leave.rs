@@ -34,7 +34,7 @@ pub enum Found {
     Along(DVec3),
     /// No straight move to infinity, as long as all of `because` stay.
     Never { because: Set },
-    /// Not found in [`MOST_TRIES`]; worth a new try when one of `because` has gone.
+    /// Not found in `MOST_TRIES`; worth a new try when one of `because` has gone.
     GaveUp { because: Set },
 }
 

@@ -3,6 +3,10 @@
 //! The reader (`read`) is what decides; it finds all faults and their places, which a derived reader can not. Not
 //! promised: the bounds of numbers.
 
+#![allow(
+    rustdoc::broken_intra_doc_links,
+    reason = "these texts go into the schema; brackets are TOML tables"
+)]
 #![allow(dead_code, reason = "these types are read by the schema's derive, never made")]
 
 use schemars::JsonSchema;

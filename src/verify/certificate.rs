@@ -1,12 +1,13 @@
 //! Takes an assembly, its contacts and a proof as written; says whether the proof holds.
 //!
-//! Shares no code with `locking`. Rank is exact (modular elimination over the numbers as they are); balance and the
-//! signs of a motion hold up to a stated round-off, not exactly. Complete: a proof that holds to that round-off passes.
+//! Shares no code with `locking`. Rank is exact (modular elimination over the numbers as they are) and stands above
+//! round-off; balance and the signs of a motion hold up to a stated round-off, not exactly. Not complete: a lock whose
+//! rank hangs on less than round-off is refused.
 
 use super::field::{Residue, ZERO, rank};
 use crate::assembly::{Assembly, PartIx};
 use crate::contact::Patch;
-use crate::report::answer::{Certificate, MotionAnswer, Proof, TwistAnswer, Word};
+use crate::report::answer::{Certificate, ForceAnswer, MotionAnswer, Proof, TwistAnswer, Word};
 use glam::DVec3;
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -72,12 +73,83 @@ pub fn certificate(asm: &Assembly, patches: &[Patch], c: &Certificate, about: Ab
             "the forces do not balance: they miss by {miss:.3e}, round-off explains {allowed:.3e}"
         ));
     }
+    standing(&unknown, asm, c, &index)?;
     let found = rank(exact.into_iter(), unknown.count);
     match (found == unknown.count, c.rank == found && c.unknowns == unknown.count) {
         (true, true) => Ok(()),
         (true, false) => Err(format!("rank {} of {} is claimed, {found} is true", c.rank, c.unknowns)),
         (false, _) => Err(format!("the rows have rank {found}, less than the {} unknowns", unknown.count)),
     }
+}
+
+/// Full rank over the rationals may be owed to the rounding of the rows: a slide that is not along the axes has rounded
+/// normals. So the rank must also stand above round-off: elimination with full pivoting on the rows' Gram matrix,
+/// moments about the middle of each part's forces, may meet no pivot that round-off could have made.
+fn standing(unknown: &Columns, asm: &Assembly, c: &Certificate, index: &BTreeMap<&str, PartIx>) -> Checked {
+    let acting = |f: &ForceAnswer| [(index[f.a.as_str()], -1.0), (index[f.b.as_str()], 1.0)];
+    let mut middle = vec![(DVec3::ZERO, 0.0); asm.parts.len()];
+    for f in &c.forces {
+        for (p, _) in acting(f) {
+            middle[p.at()].0 += DVec3::from_array(f.point);
+            middle[p.at()].1 += 1.0;
+        }
+    }
+    let arm = |f: &ForceAnswer, p: PartIx| DVec3::from_array(f.point) - middle[p.at()].0 / middle[p.at()].1;
+    let lever = c.forces.iter().flat_map(|f| acting(f).map(|(p, _)| arm(f, p).length())).fold(0.0, f64::max);
+    let lever = if lever > 0.0 { lever } else { 1.0 };
+    let n = unknown.count;
+    let mut gram = vec![0.0; n * n];
+    for f in &c.forces {
+        let mut entries = Vec::with_capacity(12);
+        for (p, sign) in acting(f) {
+            let Some(first) = unknown.first[p.at()] else { continue };
+            let (force, moment) =
+                (DVec3::from_array(f.normal), arm(f, p).cross(DVec3::from_array(f.normal)) / lever);
+            let values = [force.x, force.y, force.z, moment.x, moment.y, moment.z];
+            entries.extend(
+                values.into_iter().take(unknown.width).enumerate().map(|(k, v)| (first + k, v * sign)),
+            );
+        }
+        for &(i, v) in &entries {
+            entries.iter().for_each(|&(j, w)| gram[i * n + j] += v * w);
+        }
+    }
+    let ratio = least_pivot(gram, n);
+    let noise = PIVOT_ROUND_OFF * (n + c.forces.len()) as f64;
+    if ratio > noise {
+        return Ok(());
+    }
+    Err(format!(
+        "the rank stands on round-off: its least pivot is {ratio:.1e} of the largest, noise reaches {noise:.1e}"
+    ))
+}
+
+/// A pivot of a Gram matrix of m rows and n columns is off by up to m + n units of round-off of the largest; a factor
+/// 16 for the rows themselves, which are rounded too.
+const PIVOT_ROUND_OFF: f64 = 16.0 * f64::EPSILON;
+
+/// Least pivot over the largest, of elimination with the largest diagonal entry first.
+fn least_pivot(mut g: Vec<f64>, n: usize) -> f64 {
+    let mut left: Vec<usize> = (0..n).collect();
+    let (mut first, mut least) = (0.0_f64, 1.0_f64);
+    while let Some(at) =
+        (0..left.len()).max_by(|&a, &b| g[left[a] * n + left[a]].total_cmp(&g[left[b] * n + left[b]]))
+    {
+        let k = left.swap_remove(at);
+        let pivot = g[k * n + k];
+        first = if first == 0.0 { pivot } else { first };
+        if pivot.is_nan() || pivot <= 0.0 {
+            return 0.0;
+        }
+        least = least.min(pivot / first);
+        for &i in &left {
+            let by = g[i * n + k] / pivot;
+            if by != 0.0 {
+                left.iter().for_each(|&j| g[i * n + j] -= by * g[k * n + j]);
+            }
+        }
+    }
+    least
 }
 
 type Key = (PartIx, PartIx, [u64; 3], [u64; 3]);
