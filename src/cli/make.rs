@@ -10,8 +10,9 @@ use crate::report::content::{Chapter, Column, Table, Tone};
 use crate::report::export;
 use crate::report::file::write_whole;
 use serde::Serialize;
+use std::collections::BTreeMap;
 use std::path::Path;
-use weavelock_fab::check::Programs;
+use weavelock_fab::check::{Outcome, Programs};
 use weavelock_fab::make::{self, Recipe};
 use weavelock_fab::process::{Overrides, Process};
 use weavelock_fab::report::{Report, Severity};
@@ -114,6 +115,7 @@ pub fn fab_chapter(report: &Report, out: &Path) -> Chapter {
             format!("{least:.4} mm between {} pairs", report.gaps.len()),
         ));
     }
+    facts.extend(checked(report));
     let words =
         report.findings.iter().map(|f| format!("{:?}: {} ({})", f.severity, f.what, f.remedy)).collect();
     let tables = vec![Table {
@@ -122,6 +124,28 @@ pub fn fab_chapter(report: &Report, out: &Path) -> Chapter {
         rows: report.parts.iter().map(row).collect(),
     }];
     Chapter { tone, headline, words, facts, tables, ..Chapter::default() }
+}
+
+/// What programs of others said, a line for each program; that they were not asked is said too.
+fn checked(report: &Report) -> Vec<(String, String)> {
+    let all = report.parts.iter().flat_map(|p| &p.checks).chain(report.pair_checks.iter().map(|p| &p.check));
+    let mut by: BTreeMap<&str, [usize; 3]> = BTreeMap::new();
+    for check in all {
+        let column = match check.outcome {
+            Outcome::Passed => 0,
+            Outcome::Failed(_) => 1,
+            Outcome::NotRun(_) => 2,
+        };
+        by.entry(&check.by).or_default()[column] += 1;
+    }
+    if by.is_empty() {
+        let why = "not run: OpenSCAD, PrusaSlicer, ADMesh (`weavelock fab --check` asks them)";
+        return vec![("checked by others".into(), why.into())];
+    }
+    let line = |(name, [passed, failed, not_run]): (&str, [usize; 3])| {
+        (format!("checked by {name}"), format!("{passed} passed, {failed} failed, {not_run} not run"))
+    };
+    by.into_iter().map(line).collect()
 }
 
 #[derive(Serialize)]
