@@ -126,6 +126,33 @@ pub fn fab_chapter(report: &Report, out: &Path) -> Chapter {
     Chapter { tone, headline, words, facts, tables, ..Chapter::default() }
 }
 
+/// How the master came to its scale.
+pub fn ledger_chapter(report: &Report) -> Chapter {
+    let row = |e: &weavelock_fab::ledger::Entry| {
+        let range = format!("{} to {}", e.low_percent, e.high_percent);
+        let grade = format!("{:?}", e.grade);
+        vec![
+            e.step.clone(),
+            e.shrinkage_percent.to_string(),
+            range,
+            format!("{:.6}", e.factor),
+            e.source.clone(),
+            grade,
+        ]
+    };
+    let head = vec![
+        Column::words("step"),
+        Column::numbers("shrinks by %"),
+        Column::words("range %"),
+        Column::numbers("factor"),
+        Column::words("source"),
+        Column::words("grade"),
+    ];
+    let table = Table { caption: "Steps".into(), head, rows: report.ledger.iter().map(row).collect() };
+    let headline = format!("The master is made {:.5} times the finished size.", report.scale);
+    Chapter { headline, tables: vec![table], ..Chapter::default() }
+}
+
 /// What programs of others said, a line for each program; that they were not asked is said too.
 fn checked(report: &Report) -> Vec<(String, String)> {
     let all = report.parts.iter().flat_map(|p| &p.checks).chain(report.pair_checks.iter().map(|p| &p.check));

@@ -32,10 +32,8 @@ pub fn file(file: &Path, out: &Path, common: &Common) -> Result<Told, Trouble> {
 pub fn report(file: &Path, out: &Path, common: &Common) -> Result<Told, Trouble> {
     let placed = load::spec(file)?.joined()?;
     let asked = ask(&placed, common)?;
-    write_whole(
-        out,
-        page(&input(&placed, &asked, Answer::not_run("`weavelock fab` makes the parts"))).as_bytes(),
-    )?;
+    let none = || Answer::not_run("`weavelock fab` makes the parts");
+    write_whole(out, page(&input(&placed, &asked, none(), none())).as_bytes())?;
     let headline = format!("The page is {}.", out.display());
     let chapter = Chapter { headline, ..Chapter::default() };
     let files = Files { verb: "report", files: vec![out.display().to_string()] };
@@ -169,7 +167,8 @@ fn everything(loaded: Loaded, out: &Path, common: &Common) -> Result<Told, Troub
         }
     }
     let parts = Answer::Given(make::fab_chapter(&made, &folder));
-    keep("report.html", page(&input(&placed, &asked, parts)).as_bytes())?;
+    let ledger = Answer::Given(make::ledger_chapter(&made));
+    keep("report.html", page(&input(&placed, &asked, parts, ledger)).as_bytes())?;
     Ok(summary(&placed, asked, as_made, fab, files, out))
 }
 
@@ -219,7 +218,7 @@ const LIMITS: [&str; 4] = [
     "The tiles are those of the sampled sites; a certificate is not yet held against the curved bisectors.",
 ];
 
-fn input(placed: &Placed, asked: &Asked, parts: Answer<Chapter>) -> PageInput {
+fn input(placed: &Placed, asked: &Asked, parts: Answer<Chapter>, ledger: Answer<Chapter>) -> PageInput {
     let none = || Answer::not_run("an assembly of meshes has no weave");
     PageInput {
         title: placed.spec.name.clone(),
@@ -231,8 +230,8 @@ fn input(placed: &Placed, asked: &Asked, parts: Answer<Chapter>) -> PageInput {
         flexible: chapter(&asked.flex),
         repeats: chapter(&asked.repeats),
         chirality: chapter(&asked.chirality),
-        ledger: Answer::not_run("the scale ledger stands in fab.json"),
-        findings: Answer::not_run("findings stand with the parts"),
+        ledger,
+        findings: Answer::not_run("they stand with the parts as made"),
         parts,
         limits: LIMITS.map(String::from).to_vec(),
     }
