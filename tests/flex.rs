@@ -215,7 +215,7 @@ fn words_for_a_maker_and_bad_flags() {
         let out = ran(&["flex", path.to_str().unwrap(), &format!("{flag}={value}")]);
         assert_eq!(out.status.code(), Some(2), "{flag} {value}");
     }
-    let out = ran(&["flex", path.to_str().unwrap(), "--clearance", "9 mm"]);
+    let out = ran(&["flex", path.to_str().unwrap(), "--clearance", "40 mm"]);
     let said = String::from_utf8_lossy(&out.stderr).into_owned();
     assert_eq!(out.status.code(), Some(2), "{said}");
     assert!(said.contains("nothing is left"), "{said}");

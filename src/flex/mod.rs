@@ -26,7 +26,7 @@ pub struct Ask {
     /// Air on each face of a contact, model units; 0: the parts as they touch.
     pub clearance: f64,
     pub wanted: Wanted,
-    /// Locks and plans that may be tried, each counted as its number of parts squared.
+    /// Locks and plans that may be tried, each counted as its pairs of parts and its contact patches.
     pub work: u64,
     /// When to stop; the answer then depends on the machine.
     pub until: Option<Instant>,
