@@ -69,10 +69,10 @@ pub struct Overrides {
 
 /// What a kind of figure may be: its unit, and the values that are not a slip of the pen.
 #[derive(Clone, Copy)]
-struct Kind {
-    unit: &'static str,
-    least: f64,
-    most: f64,
+pub(crate) struct Kind {
+    pub unit: &'static str,
+    pub least: f64,
+    pub most: f64,
 }
 
 /// A clearance wider than 5 mm is no fit; a negative one is a press fit, which nothing here can promise.
@@ -202,7 +202,7 @@ fn read(top: &mut Cursor) -> Process {
     process
 }
 
-fn figure(at: &mut Cursor, key: &'static str, kind: Kind) -> Figure {
+pub(crate) fn figure(at: &mut Cursor, key: &'static str, kind: Kind) -> Figure {
     at.table(key, |t| {
         let [value, low, high] =
             ["value", "low", "high"].map(|k| t.number_in(k, kind.least, kind.most, kind.unit));
