@@ -5,6 +5,7 @@
 
 use crate::mesh::Mesh;
 use glam::{DVec2, DVec3};
+use manifold_rust::cross_section::CrossSection;
 use manifold_rust::linalg::{Vec2, Vec3};
 use manifold_rust::manifold::Manifold;
 use manifold_rust::types::{Error, MeshGL64, PolyVert};
@@ -41,8 +42,10 @@ impl Solid {
     pub fn mesh(&self) -> Mesh {
         let raw = self.0.get_mesh_gl64(-1);
         let stride = raw.num_prop.max(1) as usize;
-        let vertices = raw.vert_properties.chunks_exact(stride).map(|c| DVec3::new(c[0], c[1], c[2])).collect();
-        let triangles = raw.tri_verts.chunks_exact(3).map(|t| [t[0] as u32, t[1] as u32, t[2] as u32]).collect();
+        let vertices =
+            raw.vert_properties.chunks_exact(stride).map(|c| DVec3::new(c[0], c[1], c[2])).collect();
+        let triangles =
+            raw.tri_verts.chunks_exact(3).map(|t| [t[0] as u32, t[1] as u32, t[2] as u32]).collect();
         Mesh { vertices, triangles }
     }
 
@@ -73,7 +76,10 @@ impl Solid {
     /// The union of all, taken two by two so that no solid is gone through more than log n times.
     pub fn all(mut solids: Vec<Solid>) -> Solid {
         while solids.len() > 1 {
-            solids = solids.chunks(2).map(|p| if p.len() == 2 { p[0].with(&p[1]) } else { p[0].clone() }).collect();
+            solids = solids
+                .chunks(2)
+                .map(|p| if p.len() == 2 { p[0].with(&p[1]) } else { p[0].clone() })
+                .collect();
         }
         solids.pop().unwrap_or_else(Solid::nothing)
     }
@@ -111,6 +117,26 @@ pub fn fill(loops: &[Vec<DVec2>]) -> Vec<[u32; 3]> {
     triangles.into_iter().map(|t| [t.x as u32, t.y as u32, t.z as u32]).collect()
 }
 
+/// The union of polygons of a plane (counter-clockwise), and its widest local width in mm, to within `step`: the union is
+/// narrowed from its border until nothing is left.
+pub fn width(outlines: Vec<Vec<DVec2>>, step: f64) -> f64 {
+    let loops = outlines.into_iter().map(|l| l.into_iter().map(|p| Vec2::new(p.x, p.y)).collect()).collect();
+    let area = CrossSection::new(loops);
+    if area.is_empty() {
+        return 0.0;
+    }
+    let (mut low, mut high) = (0.0, area.bounds().size().x.max(area.bounds().size().y));
+    while high - low > step.max(high * WIDTH_ROUND_OFF) {
+        let middle = (low + high) / 2.0;
+        let left = area.offset(-middle / 2.0);
+        if left.is_empty() { high = middle } else { low = middle }
+    }
+    high
+}
+
+/// Below this share of itself a width means nothing: the kernel's plane works on a grid of about 1e-8.
+const WIDTH_ROUND_OFF: f64 = 1e-7;
+
 /// Sides of what stands for a circle: 48 leave a sagitta of 0.2 % of the radius; OpenSCAD is given the same number.
 pub const SIDES: u32 = 48;
 
@@ -133,7 +159,8 @@ pub fn frustum(foot: DVec3, height: f64, below: f64, above: f64) -> Mesh {
 }
 
 pub fn cuboid(lo: DVec3, hi: DVec3) -> Mesh {
-    let corner = |k: usize| DVec3::from_array(std::array::from_fn(|a| if k >> a & 1 == 1 { hi[a] } else { lo[a] }));
+    let corner =
+        |k: usize| DVec3::from_array(std::array::from_fn(|a| if k >> a & 1 == 1 { hi[a] } else { lo[a] }));
     let quads = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
     Mesh {
         vertices: (0..8).map(corner).collect(),

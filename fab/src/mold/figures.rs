@@ -97,6 +97,9 @@ mod tests {
     fn all_faults_of_a_file_are_named_with_their_lines() {
         let bad = EMBEDDED.replace("value = 6.0", "value = -6.0").replace("[snap]", "[snip]");
         let said = Figures::parse("own.toml", &bad).unwrap_err().to_string();
-        assert!(said.contains("-6") && said.contains("snip") && said.contains("\"snap\" is missing"), "{said}");
+        assert!(
+            said.contains("-6") && said.contains("snip") && said.contains("\"snap\" is missing"),
+            "{said}"
+        );
     }
 }

@@ -129,7 +129,13 @@ pub struct Measured {
 
 impl Measured {
     /// Kept where the value is at most the limit.
-    pub fn at_most(of: impl Into<String>, value: f64, limit: f64, unit: &'static str, because: &str) -> Measured {
+    pub fn at_most(
+        of: impl Into<String>,
+        value: f64,
+        limit: f64,
+        unit: &'static str,
+        because: &str,
+    ) -> Measured {
         let kept = value <= limit;
         Measured { of: of.into(), value, limit, unit, because: because.to_string(), kept }
     }
