@@ -93,6 +93,18 @@ impl Solid {
         Solid(self.0.translate(Vec3::new(by.x, by.y, by.z)))
     }
 
+    /// The same with detail below `size` mm gone: shorter edges united, and bodies thinner than that left out.
+    pub fn plain(&self, size: f64) -> Solid {
+        let whole = Solid(self.0.simplify(size));
+        let thick = |b: &Solid| b.volume().abs() > size * b.0.surface_area();
+        let bodies = whole.bodies();
+        if bodies.iter().all(thick) {
+            whole
+        } else {
+            Solid(Manifold::compose(&bodies.into_iter().filter(thick).map(|b| b.0).collect::<Vec<_>>()))
+        }
+    }
+
     /// Whether triangles of its surface cross: then no volume of it means anything.
     pub fn crosses_itself(&self) -> bool {
         self.0.has_self_intersections()
@@ -140,22 +152,29 @@ const WIDTH_ROUND_OFF: f64 = 1e-7;
 /// Sides of what stands for a circle: 48 leave a sagitta of 0.2 % of the radius; OpenSCAD is given the same number.
 pub const SIDES: u32 = 48;
 
-/// An upright frustum on circles of the given radii, mm.
-pub fn frustum(foot: DVec3, height: f64, below: f64, above: f64) -> Mesh {
-    let ring = |z: f64, r: f64| {
+/// An upright turned body: rings of the given heights above `foot` and radii, mm, from below.
+pub fn turned(foot: DVec3, rings: &[(f64, f64)]) -> Mesh {
+    let ring = |&(z, r): &(f64, f64)| {
         (0..SIDES).map(move |k| {
             let (sin, cos) = (std::f64::consts::TAU * f64::from(k) / f64::from(SIDES)).sin_cos();
             foot + DVec3::new(r * cos, r * sin, z)
         })
     };
-    let vertices = ring(0.0, below).chain(ring(height, above)).collect();
-    let cap = |k: u32| [[0, k + 1, k], [SIDES, SIDES + k, SIDES + k + 1]];
+    let last = (rings.len().max(1) as u32 - 1) * SIDES;
+    let cap = |k: u32| [[0, k + 1, k], [last, last + k, last + k + 1]];
     let wall = |k: u32| {
-        let next = (k + 1) % SIDES;
-        [[k, next, SIDES + next], [k, SIDES + next, SIDES + k]]
+        let (lap, next) = (k - k % SIDES, k - k % SIDES + (k + 1) % SIDES);
+        [[k, next, lap + SIDES + (k + 1) % SIDES], [k, lap + SIDES + (k + 1) % SIDES, k + SIDES]]
     };
-    let triangles = (1..SIDES - 1).flat_map(cap).chain((0..SIDES).flat_map(wall)).collect();
-    Mesh { vertices, triangles }
+    Mesh {
+        vertices: rings.iter().flat_map(ring).collect(),
+        triangles: (1..SIDES - 1).flat_map(cap).chain((0..last).flat_map(wall)).collect(),
+    }
+}
+
+/// An upright frustum on circles of the given radii, mm.
+pub fn frustum(foot: DVec3, height: f64, below: f64, above: f64) -> Mesh {
+    turned(foot, &[(0.0, below), (height, above)])
 }
 
 pub fn cuboid(lo: DVec3, hi: DVec3) -> Mesh {

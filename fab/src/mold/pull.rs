@@ -21,6 +21,8 @@ pub struct Candidate {
     pub direction: DVec3,
     /// Area that neither half reaches straight, mm2; 0 where it is round-off.
     pub undercut: f64,
+    /// The same in steps of [`SAME_UNDERCUT`], by which directions are compared.
+    pub level: u64,
     /// Extent along the direction, mm.
     pub depth: f64,
 }
@@ -52,6 +54,10 @@ const FIRST_TILT: f64 = 0.1;
 /// Normals nearer to each other than this, or to opposite, are one candidate: a tenth of a degree.
 const SAME_DIRECTION: f64 = 1.75e-3;
 
+/// Undercuts that differ by less than this share of the surface count as the same: the share of its volume by which a
+/// cavity may be off.
+const SAME_UNDERCUT: f64 = 1e-4;
+
 pub fn search(part: &Mesh) -> Search {
     let (tree, samples) = (Bvh::new(part), samples(part));
     let mut looked_at = candidates(part);
@@ -68,7 +74,7 @@ pub fn search(part: &Mesh) -> Search {
     }
     let finalists = (EXACT_TRIANGLES / part.triangles.len().max(1)).clamp(4, 24);
     let mut best: Vec<Candidate> = rated.par_iter().take(finalists).map(|r| measured(part, r.2)).collect();
-    best.sort_by(|a, b| a.undercut.total_cmp(&b.undercut).then(a.depth.total_cmp(&b.depth)));
+    best.sort_by(|a, b| a.level.cmp(&b.level).then(a.depth.total_cmp(&b.depth)));
     Search { best, looked_at: looked_at.len() }
 }
 
@@ -78,7 +84,8 @@ pub fn measured(part: &Mesh, direction: DVec3) -> Candidate {
     let snap = snap_of(part);
     let blocked = undercut(&turned, snap);
     let undercut = if blocked.is_real() { real_area(&turned, &blocked).iter().sum() } else { 0.0 };
-    Candidate { direction, undercut, depth: depth(part, direction) }
+    let level = (undercut / (part.area() * SAME_UNDERCUT)) as u64;
+    Candidate { direction, undercut, level, depth: depth(part, direction) }
 }
 
 /// How far f32 may move a corner of the part once its middle is at the origin, mm.

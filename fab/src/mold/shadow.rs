@@ -30,12 +30,14 @@ pub struct Blocked {
     pub area: f64,
     /// What round-off of the coordinates alone can make of it, mm2.
     pub round_off: f64,
+    /// The widest strip that round-off can make, mm.
+    pub strip: f64,
 }
 
 impl Blocked {
-    /// Whether more is blocked than round-off explains.
+    /// Whether more is blocked than round-off explains: in all, or somewhere in width.
     pub fn is_real(&self) -> bool {
-        self.area > self.round_off
+        self.area > self.round_off || (self.area > 0.0 && reach(self, self.strip) > self.strip)
     }
 }
 
@@ -87,7 +89,8 @@ pub fn blocked(lower: &Side, upper: &Side, snap: f64) -> Blocked {
     });
     found.sort_by_key(|o| (o.lower, o.upper));
     let area = found.iter().map(|o| o.area).sum();
-    Blocked { overlaps: found, area, round_off: STRIPS * snap * (lower.edges() + upper.edges()) }
+    let strip = STRIPS * LEVEL_IN_SNAPS * snap;
+    Blocked { overlaps: found, area, round_off: STRIPS * snap * (lower.edges() + upper.edges()), strip }
 }
 
 /// A strip along an edge is at most this many snaps wide: each of its two borders moves by one.
@@ -150,7 +153,7 @@ fn area(p: &[DVec2]) -> f64 {
 }
 
 /// Height of a facet's plane at a point, kept within the facet's own heights so that steep facets can not throw it off.
-fn height(c: &[DVec3; 3], p: DVec2) -> f64 {
+pub fn height(c: &[DVec3; 3], p: DVec2) -> f64 {
     let n = (c[1] - c[0]).cross(c[2] - c[0]);
     let (lo, hi) = c.iter().fold((f64::MAX, f64::MIN), |(l, h), v| (l.min(v.z), h.max(v.z)));
     let d = p - flat(c[0]);

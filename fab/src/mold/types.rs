@@ -4,6 +4,8 @@ use crate::check::Check;
 use crate::files::FileError;
 use crate::mesh::Mesh;
 use crate::mold::figures::Figures;
+use crate::mold::plan::Plan;
+use crate::mold::tops::Top;
 use crate::report::Finding;
 use glam::{DMat3, DVec3};
 use serde::Serialize;
@@ -111,8 +113,9 @@ pub struct Maps {
 pub enum Parting {
     /// In the mold's frame.
     Plane { height_mm: f64 },
-    /// Ruled outward from the silhouette; heights in the mold's frame.
-    Stepped { low_mm: f64, high_mm: f64, triangles: usize },
+    /// A plane with upright steps to the silhouette where that leaves it; `off_mm2` is the projected area on steps,
+    /// heights are of the silhouette's steps, in the mold's frame.
+    Stepped { height_mm: f64, off_mm2: f64 },
 }
 
 /// Something measured against a limit.
@@ -137,6 +140,18 @@ impl Measured {
         because: &str,
     ) -> Measured {
         let kept = value <= limit;
+        Measured { of: of.into(), value, limit, unit, because: because.to_string(), kept }
+    }
+
+    /// Kept where the value is at least the limit.
+    pub fn at_least(
+        of: impl Into<String>,
+        value: f64,
+        limit: f64,
+        unit: &'static str,
+        because: &str,
+    ) -> Measured {
+        let kept = value >= limit;
         Measured { of: of.into(), value, limit, unit, because: because.to_string(), kept }
     }
 }
@@ -175,8 +190,10 @@ pub struct Mold {
     /// Turns the part's frame to the mold's: z is the pull. Then the mold's origin is the middle of the part's foot.
     pub turn: DMat3,
     pub shift: DVec3,
-    /// The part in the mold's frame, as f32 can hold it.
+    /// The part in the mold's frame, as f32 can hold it; all of a gang.
     pub part: Mesh,
+    /// How far f32 may move a coordinate of a file, mm.
+    pub snap: f64,
     pub parting: Option<Parting>,
     pub maps: Maps,
     pub pieces: Vec<Piece>,
@@ -185,7 +202,11 @@ pub struct Mold {
     pub measured: Vec<Measured>,
     pub steps: Vec<Step>,
     pub findings: Vec<Finding>,
-    pub(crate) plan: crate::mold::plan::Plan,
+    pub figures: Figures,
+    /// Where keys, screws and channels stand.
+    pub plan: Plan,
+    /// Local high points of the cavity as it is poured.
+    pub tops: Vec<Top>,
 }
 
 /// A piece as written.
