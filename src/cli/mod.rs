@@ -3,9 +3,12 @@
 //! Not promised: any finding of its own. No panic reaches a user: what slips through is reported as a fault of ours.
 
 pub mod args;
+pub mod flex;
 mod load;
 mod make;
 mod questions;
+mod repeated;
+pub mod repeats;
 mod run;
 mod schema;
 mod told;
@@ -44,8 +47,8 @@ fn dispatch(args: &Args) -> Result<Told, Trouble> {
         Some(Verb::Plan { file, of, clearance }) => {
             questions::plan(&load::spec(file)?.joined()?, of, clearance.unwrap_or(0.0))
         }
-        Some(Verb::Flex { file }) => questions::flex(&load::spec(file)?.joined()?),
-        Some(Verb::Repeats(asked)) => questions::repeats(asked),
+        Some(Verb::Flex(asked)) => flex::flex(asked),
+        Some(Verb::Repeats(asked)) => repeats::repeats(asked),
         Some(Verb::Chirality { subject }) => questions::chirality(subject),
         Some(Verb::Weave { subject, svg, wif }) => questions::weave(subject, svg.as_deref(), wif.as_deref()),
         Some(Verb::Fab { file, process, out, check }) => {
