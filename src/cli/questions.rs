@@ -2,12 +2,12 @@
 //!
 //! Not promised: anything beyond what the stage that answers promises.
 
-use super::args::{Common, Repeats};
+use super::args::Repeats;
 use super::load::{self, Placed};
 use super::told::{News, Told, Trouble};
 use super::words;
 use crate::assembly::PartIx;
-use crate::atlas::{self, Ask};
+use crate::atlas;
 use crate::chirality::{
     self,
     answer::{Handedness, Hands, WarpIs},
@@ -26,8 +26,7 @@ use crate::sequence::{self, Outcome, Plan, Searched};
 use crate::spec::{self, Bounds, ProfileSpec, Shape};
 use crate::verify;
 use crate::weave::{self, Weave};
-use serde::Serialize;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 pub fn check(placed: &Placed, fix: Option<&str>) -> Result<Told, Trouble> {
     let joined = &placed.joined;
@@ -140,7 +139,7 @@ pub fn told_flex(answer: &FlexAnswer) -> Told {
 
 pub fn repeats(asked: &Repeats) -> Result<Told, Trouble> {
     let weave = load::weave(&asked.weave)?;
-    let profile = profile(asked)?;
+    let profile = profile(asked.rise, asked.lift, asked.cover, asked.samples)?;
     let search = Search {
         wefts: asked.wefts.unwrap_or(weave.tile.0),
         warps: asked.warps.unwrap_or(weave.tile.0),
@@ -167,8 +166,7 @@ pub fn told_repeats(answer: &RepeatsAnswer) -> Told {
 }
 
 /// The profile of the flags, held to the same bounds as a spec's.
-fn profile(asked: &Repeats) -> Result<ProfileSpec, Trouble> {
-    let Repeats { rise, lift, cover, samples, .. } = *asked;
+pub fn profile(rise: f64, lift: f64, cover: f64, samples: u32) -> Result<ProfileSpec, Trouble> {
     let text = format!(
         "[weave]\nabc = [1, 1, 1]\n[profile]\nrise = {rise:?}\nlift = {lift:?}\ncover = {cover:?}\nsamples = {samples}\n[swatch]\nwefts = 2\nwarps = 2\ncut = \"window\"\n[size]\npitch = \"1 mm\"\n"
     );
@@ -247,23 +245,4 @@ fn told_hands(hands: &Hands) -> Told {
         remarks: hands.remarks.clone(),
         ..Told::new(news, hands, &hands.name, "Hands", words::hands(hands))
     }
-}
-
-pub fn atlas(max_n: u32, out: &Path, common: &Common) -> Result<Told, Trouble> {
-    let ask = Ask::new(max_n);
-    let all = atlas::weaves(max_n).len();
-    let written = atlas::write(&ask, out, |row| {
-        if !common.quiet {
-            eprintln!("[{},{},{}] of {all} weaves", row.a, row.b, row.c);
-        }
-    })?;
-    let answer = AtlasAnswer { verb: "atlas", rows: &written.rows, files: &written.files };
-    Ok(Told::new(News::Good, &answer, &format!("weaves up to n = {max_n}"), "Atlas", words::atlas(&written)))
-}
-
-#[derive(Serialize)]
-struct AtlasAnswer<'a> {
-    verb: &'static str,
-    rows: &'a [atlas::Row],
-    files: &'a [PathBuf],
 }
