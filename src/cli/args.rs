@@ -107,13 +107,8 @@ pub enum Verb {
     },
     /// Re-checks a certificate or plan without the solver that made it: `weavelock verify out/check.json`
     Verify { answer: PathBuf },
-    /// The table over all [a,b,c] up to a size
-    Atlas {
-        #[arg(long, value_name = "N", default_value_t = 5, value_parser = clap::value_parser!(u32).range(2..=64))]
-        max_n: u32,
-        #[arg(long, default_value = "atlas")]
-        out: PathBuf,
-    },
+    /// The table over all [a,b,c] up to a size, with its picture: `weavelock atlas --max-n 6 --out atlas`
+    Atlas(super::atlas::Asked),
     /// The page for a file, one self-contained HTML file
     Report {
         file: PathBuf,

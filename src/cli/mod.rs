@@ -3,6 +3,7 @@
 //! Not promised: any finding of its own. No panic reaches a user: what slips through is reported as a fault of ours.
 
 pub mod args;
+pub mod atlas;
 pub mod flex;
 mod load;
 mod make;
@@ -58,7 +59,7 @@ fn dispatch(args: &Args) -> Result<Told, Trouble> {
             make::export(&load::spec(file)?.joined()?, *format, *layout, out)
         }
         Some(Verb::Verify { answer }) => questions::verify(answer),
-        Some(Verb::Atlas { max_n, out }) => questions::atlas(*max_n, out, &args.common),
+        Some(Verb::Atlas(asked)) => atlas::atlas(asked, &args.common),
         Some(Verb::Report { file, out }) => run::report(file, out, &args.common),
         Some(Verb::Schema) => schema::schema(),
     }

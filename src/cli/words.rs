@@ -2,10 +2,9 @@
 //!
 //! Not promised: a word more than the answer carries.
 
-use crate::atlas::{Row, Written};
 use crate::chirality::answer::{Handedness, Hands, TileAnswer, WarpIs};
 use crate::report::answer::{WeaveAnswer, Word};
-use crate::report::content::{Chapter, Column, Table, Tone};
+use crate::report::content::{Chapter, Tone};
 use crate::verify::Verified;
 
 pub fn fact(name: &str, value: impl Into<String>) -> (String, String) {
@@ -68,28 +67,6 @@ pub fn hands(a: &Hands) -> Chapter {
 
 fn lower(hand: Handedness) -> String {
     format!("{hand:?}").to_lowercase()
-}
-
-pub fn atlas(written: &Written) -> Chapter {
-    let row = |r: &Row| {
-        let hand = |h: Option<String>| h.unwrap_or("-".into()).to_lowercase();
-        vec![
-            format!("[{},{},{}]", r.a, r.b, r.c),
-            r.family.clone(),
-            hand(r.tile.map(|t| format!("{t:?}"))),
-            hand(r.warp_is.map(|w| format!("{w:?}"))),
-            r.minimal_repeat.map_or(format!("none up to {}", r.most), |k| k.to_string()),
-        ]
-    };
-    let table = Table {
-        caption: "Weaves that hang together; least repetition at phase 0, swatch n x n".into(),
-        head: ["weave", "family", "tile", "warp is", "least k"].map(Column::words).to_vec(),
-        rows: written.rows.iter().map(row).collect(),
-    };
-    let headline =
-        format!("{} weaves, {} of them found there from before.", written.rows.len(), written.found);
-    let words = written.files.iter().map(|f| f.display().to_string()).collect();
-    Chapter { headline, words, tables: vec![table], ..Chapter::default() }
 }
 
 /// The verdict of a check that was told; undecided where it cannot be read.
