@@ -167,6 +167,8 @@ pub struct MeshPartSpec {
     pub held: Mobility,
     /// Proper rigid motion, translation in the file's unit.
     pub at: DAffine3,
+    /// By how much the pose may be turned from the one that was meant, as far as its digits tell, in radians.
+    pub turn: f64,
 }
 
 /// How the parts are to be made.
