@@ -3,6 +3,7 @@
 //! Not promised: any finding of its own. No panic reaches a user: what slips through is reported as a fault of ours.
 
 pub mod args;
+mod check;
 mod load;
 mod make;
 mod questions;
@@ -40,7 +41,9 @@ fn dispatch(args: &Args) -> Result<Told, Trouble> {
     match &args.verb {
         None => run::example(&args.common),
         Some(Verb::Run { file, out }) => run::file(file, out, &args.common),
-        Some(Verb::Check { file, fix }) => questions::check(&load::spec(file)?.joined()?, fix.as_deref()),
+        Some(Verb::Check { file, fix, refine }) => {
+            check::check(&load::spec(file)?.joined()?, fix.as_deref(), *refine)
+        }
         Some(Verb::Plan { file, of, clearance }) => {
             questions::plan(&load::spec(file)?.joined()?, of, clearance.unwrap_or(0.0))
         }

@@ -16,7 +16,7 @@ use crate::contact::Joined;
 use crate::fault::Fault;
 use crate::flex as flexible;
 use crate::input;
-use crate::locking::{self, Check, Verdict};
+use crate::locking::{self, Verdict};
 use crate::repeats::{self, Search};
 use crate::report::answer::{self, Certificate, FlexAnswer, PlanAnswer, RepeatsAnswer, Sealed};
 use crate::report::file::write_whole;
@@ -29,24 +29,7 @@ use crate::weave::{self, Weave};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 
-pub fn check(placed: &Placed, fix: Option<&str>) -> Result<Told, Trouble> {
-    let joined = &placed.joined;
-    let fix = fix.map(|id| part(joined, id)).transpose()?;
-    let check = locking::check(&joined.assembly, &joined.patches, fix);
-    Ok(told_check(placed, &check))
-}
-
-pub fn told_check(placed: &Placed, check: &Check) -> Told {
-    let answer = answer::check(&placed.joined, check, placed.source.clone());
-    let news = News::of(matches!(check.rigid, Verdict::Locked(_)));
-    let chapter = chapters::verdict(&placed.joined.assembly, check);
-    Told {
-        remarks: answer.remarks.clone(),
-        ..Told::new(news, &answer, &answer.name, "Does it lock?", chapter)
-    }
-}
-
-fn part(joined: &Joined, id: &str) -> Result<PartIx, Trouble> {
+pub fn part(joined: &Joined, id: &str) -> Result<PartIx, Trouble> {
     let asm = &joined.assembly;
     let all = || asm.parts.iter().map(|p| p.id.as_str()).take(12).collect::<Vec<_>>().join(", ");
     asm.ids().find(|&p| asm.part(p).id == id).ok_or_else(|| {
