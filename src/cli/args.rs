@@ -44,12 +44,15 @@ pub enum Verb {
         #[arg(long, default_value = "out")]
         out: PathBuf,
     },
-    /// Is it locked? By translations, by rigid motions; with a certificate: `weavelock check plain.toml`
+    /// Is it locked? By translations, by rigid motions; with a certificate: `weavelock check plain.toml --refine`
     Check {
         file: PathBuf,
         /// Part to take as fixed where none is held (the verdict does not depend on it)
         #[arg(long, value_name = "PART")]
         fix: Option<String>,
+        /// Repeat with doubled samples until the verdict stands, or say that it does not (64 samples at most)
+        #[arg(long)]
+        refine: bool,
     },
     /// How does it come apart, and together? `weavelock plan twill.toml --json`
     Plan {

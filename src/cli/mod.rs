@@ -4,6 +4,7 @@
 
 pub mod args;
 pub mod atlas;
+mod check;
 pub mod flex;
 mod load;
 mod make;
@@ -44,7 +45,9 @@ fn dispatch(args: &Args) -> Result<Told, Trouble> {
     match &args.verb {
         None => run::example(&args.common),
         Some(Verb::Run { file, out }) => run::file(file, out, &args.common),
-        Some(Verb::Check { file, fix }) => questions::check(&load::spec(file)?.joined()?, fix.as_deref()),
+        Some(Verb::Check { file, fix, refine }) => {
+            check::check(&load::spec(file)?.joined()?, fix.as_deref(), *refine)
+        }
         Some(Verb::Plan { file, of, clearance }) => {
             questions::plan(&load::spec(file)?.joined()?, of, clearance.unwrap_or(0.0))
         }

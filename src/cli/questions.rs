@@ -14,7 +14,7 @@ use crate::chirality::{
 use crate::contact::Joined;
 use crate::fault::Fault;
 use crate::input;
-use crate::locking::{self, Check, Verdict};
+use crate::locking::{self, Verdict};
 use crate::report::answer::{self, Certificate, PlanAnswer, Sealed};
 use crate::report::file::write_whole;
 use crate::report::words as chapters;
@@ -23,23 +23,6 @@ use crate::sequence::{self, Outcome, Plan, Searched};
 use crate::verify;
 use crate::weave::{self, Weave};
 use std::path::Path;
-
-pub fn check(placed: &Placed, fix: Option<&str>) -> Result<Told, Trouble> {
-    let joined = &placed.joined;
-    let fix = fix.map(|id| part(joined, id)).transpose()?;
-    let check = locking::check(&joined.assembly, &joined.patches, fix);
-    Ok(told_check(placed, &check))
-}
-
-pub fn told_check(placed: &Placed, check: &Check) -> Told {
-    let answer = answer::check(&placed.joined, check, placed.source.clone());
-    let news = News::of(matches!(check.rigid, Verdict::Locked(_)));
-    let chapter = chapters::verdict(&placed.joined.assembly, check);
-    Told {
-        remarks: answer.remarks.clone(),
-        ..Told::new(news, &answer, &answer.name, "Does it lock?", chapter)
-    }
-}
 
 pub fn part(joined: &Joined, id: &str) -> Result<PartIx, Trouble> {
     let asm = &joined.assembly;

@@ -3,6 +3,7 @@
 //! Not promised: that a question which failed stops the others; it is told as not run, with the reason.
 
 use super::args::Common;
+use super::check;
 use super::flex;
 use super::load::{self, Loaded, Placed};
 use super::make::{self, Checkers};
@@ -77,7 +78,7 @@ fn ask(placed: &Placed, common: &Common) -> Result<Asked, Trouble> {
     progress("is it locked");
     let check = placed.check();
     let pictures = pictures(placed, &check)?;
-    let check = questions::told_check(placed, &check);
+    let check = check::told(placed, &check, None);
     progress("how does it go together");
     let all: Vec<PartIx> = asm.ids().collect();
     let plan = questions::told_plan(placed, &questions::planned(placed, &all, 0.0));
@@ -217,7 +218,7 @@ const LIMITS: [&str; 4] = [
     "Molds, castings and their sheets are not built yet; parts with clearance and allowance are.",
     "Plans are straight moves of parts and groups; turns and moves in several stretches are not searched.",
     "Locked is first order at zero clearance; the least clearance that opens a lock is not searched for yet.",
-    "The tiles are those of the sampled sites; a certificate is not yet held against the curved bisectors.",
+    "The tiles are those of the sampled sites; the check says whether its verdict holds for the curved bisectors too.",
 ];
 
 fn input(placed: &Placed, asked: &Asked, parts: Answer<Chapter>, ledger: Answer<Chapter>) -> PageInput {

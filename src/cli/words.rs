@@ -6,6 +6,7 @@ use crate::chirality::answer::{Handedness, Hands, TileAnswer, WarpIs};
 use crate::report::answer::{WeaveAnswer, Word};
 use crate::report::content::{Chapter, Tone};
 use crate::verify::Verified;
+use crate::verify::certificate::{Arithmetic, Shown};
 
 pub fn fact(name: &str, value: impl Into<String>) -> (String, String) {
     (name.into(), value.into())
@@ -77,5 +78,21 @@ pub fn verdict_word(json: &str) -> Word {
 
 pub fn verified(a: &Verified) -> Chapter {
     let (tone, headline) = if a.valid { (Tone::Good, "Valid.") } else { (Tone::Bad, "Not valid.") };
-    Chapter { tone, headline: headline.into(), words: vec![format!("{}.", a.why)], ..Chapter::default() }
+    let proof = |(about, p): (&String, &Shown)| {
+        let how = match p.arithmetic {
+            Arithmetic::Exact => "exact",
+            Arithmetic::RoundOff => "to round-off",
+            Arithmetic::None => "no claim",
+        };
+        let least = p.least_force.map_or(String::new(), |f| format!("; least force {f:.6} or more"));
+        fact(about, format!("{how}: {}{least}", p.how))
+    };
+    let facts = a.proofs.iter().map(proof).collect();
+    Chapter {
+        tone,
+        headline: headline.into(),
+        words: vec![format!("{}.", a.why)],
+        facts,
+        ..Chapter::default()
+    }
 }
