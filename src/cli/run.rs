@@ -4,7 +4,7 @@
 
 use super::args::Common;
 use super::load::{self, Loaded, Placed};
-use super::make::{self, Checkers};
+use super::make;
 use super::questions;
 use super::told::{News, Told, Trouble};
 use super::words;
@@ -146,7 +146,7 @@ fn everything(loaded: Loaded, out: &Path, common: &Common) -> Result<Told, Troub
         eprintln!("making the parts ...");
     }
     let folder = out.join("parts");
-    let made = make::made(&placed, None, &folder, Checkers::None)?;
+    let made = make::made(&placed, &folder)?;
     let fab = make::told_fab(&made, &folder);
     let mut files = vec![folder.display().to_string()];
     let mut keep = |name: &str, bytes: &[u8]| -> Result<(), Trouble> {
@@ -212,7 +212,7 @@ fn chapter(told: &Result<Told, String>) -> Answer<Chapter> {
 
 /// What is not built; said wherever a whole run is told.
 const LIMITS: [&str; 4] = [
-    "Molds, castings and their sheets are not built yet; parts with clearance and allowance are.",
+    "A run makes the parts alone; `weavelock fab` makes the package with plates, sheets and coupon. Molds are not built yet.",
     "Plans are straight moves of parts and groups; turns and moves in several stretches are not searched.",
     "Locked is first order at zero clearance; the least clearance that opens a lock is not searched for yet.",
     "The tiles are those of the sampled sites; a certificate is not yet held against the curved bisectors.",
@@ -313,5 +313,6 @@ fn summary(
         chapters,
         closing,
         remarks: asked.remarks,
+        bare: None,
     }
 }
