@@ -17,6 +17,7 @@ pub mod fault;
 pub mod flex;
 pub mod input;
 pub mod locking;
+pub mod made;
 pub mod profile;
 pub mod repeats;
 pub mod report;

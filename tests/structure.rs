@@ -6,7 +6,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 /// Each module of `src` and the modules that it may use. What stands in one line never uses its neighbours there.
-const FLOW: [&[&str]; 16] = [
+const FLOW: [&[&str]; 17] = [
     &["fault", "solid"],
     &["input"],
     &["weave"],
@@ -18,6 +18,7 @@ const FLOW: [&[&str]; 16] = [
     &["contact"],
     &["blocking", "locking"],
     &["sequence"],
+    &["made"],
     &["repeats", "flex", "chirality", "fabricate"],
     &["report"],
     &["verify", "atlas"],

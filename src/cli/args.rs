@@ -61,10 +61,10 @@ pub enum Verb {
         #[arg(long, value_name = "LENGTH", value_parser = length)]
         clearance: Option<f64>,
     },
-    /// Does it need flexible parts? The fewest, which, and the bound's proof
-    Flex { file: PathBuf },
-    /// The smallest repetition of the unit tile that locks: `weavelock repeats [2,2,1]`
-    Repeats(Repeats),
+    /// Does it need flexible parts? The fewest, all such sets, and the bound's proof: `weavelock flex plain.toml`
+    Flex(super::flex::Asked),
+    /// The smallest repetition of the unit tile that locks: `weavelock repeats [2,2,1] --swatch n,2n --phases all`
+    Repeats(Box<super::repeats::Asked>),
     /// Hands of the tile, of weft against warp, and of the assembly: `weavelock chirality [4,1,2]`
     Chirality {
         #[arg(allow_hyphen_values = true, value_name = "FILE|[a,b,c]")]
@@ -151,32 +151,6 @@ pub struct Fab {
     pub check: bool,
 }
 
-#[derive(ClapArgs, Debug)]
-pub struct Repeats {
-    #[arg(allow_hyphen_values = true, value_name = "[a,b,c]")]
-    pub weave: String,
-    /// Largest repetition to try
-    #[arg(long, default_value_t = 6, value_parser = clap::value_parser!(u32).range(1..=64))]
-    pub most: u32,
-    /// Phases of the cuts to try; all must lock
-    #[arg(long, value_delimiter = ',', default_value = "0", allow_hyphen_values = true)]
-    pub phase: Vec<i32>,
-    /// Wefts and warps of the swatch (default: n and n)
-    #[arg(long, value_parser = clap::value_parser!(u32).range(1..=256))]
-    pub wefts: Option<u32>,
-    #[arg(long, value_parser = clap::value_parser!(u32).range(1..=256))]
-    pub warps: Option<u32>,
-    /// Profile, as in a spec's [profile]
-    #[arg(long, default_value_t = 0.6)]
-    pub rise: f64,
-    #[arg(long, default_value_t = 1.0)]
-    pub lift: f64,
-    #[arg(long, default_value_t = 1.0)]
-    pub cover: f64,
-    #[arg(long, default_value_t = 8)]
-    pub samples: u32,
-}
-
 #[derive(ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Format {
     Stl,
@@ -192,6 +166,6 @@ pub enum Together {
 }
 
 /// A length with its unit, in mm.
-fn length(text: &str) -> Result<f64, String> {
+pub fn length(text: &str) -> Result<f64, String> {
     crate::spec::length_mm(text)
 }

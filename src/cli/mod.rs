@@ -3,11 +3,14 @@
 //! Not promised: any finding of its own. No panic reaches a user: what slips through is reported as a fault of ours.
 
 pub mod args;
+pub mod flex;
 mod load;
 mod make;
 mod package;
 mod pictured;
 mod questions;
+mod repeated;
+pub mod repeats;
 mod run;
 mod schema;
 mod told;
@@ -46,8 +49,8 @@ fn dispatch(args: &Args) -> Result<Told, Trouble> {
         Some(Verb::Plan { file, of, clearance }) => {
             questions::plan(&load::spec(file)?.joined()?, of, clearance.unwrap_or(0.0))
         }
-        Some(Verb::Flex { file }) => questions::flex(&load::spec(file)?.joined()?),
-        Some(Verb::Repeats(asked)) => questions::repeats(asked),
+        Some(Verb::Flex(asked)) => flex::flex(asked),
+        Some(Verb::Repeats(asked)) => repeats::repeats(asked),
         Some(Verb::Chirality { subject }) => questions::chirality(subject),
         Some(Verb::Weave { subject, svg, wif }) => questions::weave(subject, svg.as_deref(), wif.as_deref()),
         Some(Verb::Fab(asked)) => package::fab(&load::spec(&asked.file)?.joined()?, asked, &args.common),

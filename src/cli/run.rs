@@ -3,9 +3,11 @@
 //! Not promised: that a question which failed stops the others; it is told as not run, with the reason.
 
 use super::args::Common;
+use super::flex;
 use super::load::{self, Loaded, Placed};
 use super::make;
 use super::questions;
+use super::repeats;
 use super::told::{News, Told, Trouble};
 use super::words;
 use crate::assembly::PartIx;
@@ -81,7 +83,7 @@ fn ask(placed: &Placed, common: &Common) -> Result<Asked, Trouble> {
     let plan = questions::told_plan(placed, &questions::planned(placed, &all, 0.0));
     progress("does it need a flexible part");
     let flex = if asm.parts.len() <= MOST_PARTS_FOR_FLEX {
-        questions::flexed(placed).map(|a| questions::told_flex(&a)).map_err(|t| t.to_string())
+        flex::flexed(placed, &flex::Settings::default()).map(|a| flex::told(&a)).map_err(|t| t.to_string())
     } else {
         Err(format!("not searched for more than {MOST_PARTS_FOR_FLEX} parts in a run; `weavelock flex` does"))
     };
@@ -104,9 +106,9 @@ fn woven(placed: &Placed, progress: &impl Fn(&str)) -> Result<Woven, Trouble> {
         _ => 0,
     };
     let n = woven.weave.tile;
-    let search = Search { wefts: n.0, warps: n.0, phases: vec![phase], most: MOST_REPEATS };
-    let repeats = questions::repeated(&woven.weave, &name(&woven.weave), &woven.profile, &search);
-    let repeats = repeats.map(|a| questions::told_repeats(&a)).map_err(|t| t.to_string());
+    let search = Search { wefts: n.1, warps: n.0, phases: vec![phase], most: MOST_REPEATS };
+    let repeats = repeats::repeated(&woven.weave, &name(&woven.weave), &woven.profile, &search);
+    let repeats = repeats.map(|a| repeats::told(&a)).map_err(|t| t.to_string());
     let chirality = questions::told_chirality(placed).map_err(|t| t.to_string());
     Ok((Some(weave), repeats, chirality))
 }

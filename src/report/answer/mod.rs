@@ -4,11 +4,11 @@
 //! accidental change. Not promised: that a checksum stops a forger; `verify` re-does the mathematics.
 
 mod flex;
-mod repeats;
+pub mod repeats;
 mod weave;
 
-pub use flex::{CoreAnswer, FlexAnswer, flex};
-pub use repeats::{RepeatsAnswer, RepeatsRow, repeats};
+pub use flex::{CoreAnswer, FlexAnswer, OrbitAnswer, SymmetryOfParts, flex};
+pub use repeats::RepeatsAnswer;
 pub use weave::{WeaveAnswer, weave};
 
 use crate::assembly::{Assembly, PartIx};
@@ -150,6 +150,8 @@ pub struct PlanAnswer {
 pub enum Sealed {
     Check(Box<CheckAnswer>),
     Plan(Box<PlanAnswer>),
+    Flex(Box<FlexAnswer>),
+    Repeats(Box<RepeatsAnswer>),
 }
 
 pub fn ids(assembly: &Assembly, parts: &[PartIx]) -> Vec<String> {
