@@ -8,6 +8,8 @@ mod check;
 pub mod flex;
 mod load;
 mod make;
+mod package;
+mod pictured;
 mod questions;
 mod repeated;
 pub mod repeats;
@@ -55,9 +57,8 @@ fn dispatch(args: &Args) -> Result<Told, Trouble> {
         Some(Verb::Repeats(asked)) => repeats::repeats(asked),
         Some(Verb::Chirality { subject }) => questions::chirality(subject),
         Some(Verb::Weave { subject, svg, wif }) => questions::weave(subject, svg.as_deref(), wif.as_deref()),
-        Some(Verb::Fab { file, process, out, check }) => {
-            make::fab(&load::spec(file)?.joined()?, process.as_deref(), out, make::Checkers::of(*check))
-        }
+        Some(Verb::Fab(asked)) => package::fab(&load::spec(&asked.file)?.joined()?, asked, &args.common),
+        Some(Verb::Processes { name }) => package::processes(name.as_deref()),
         Some(Verb::Export { file, format, layout, out }) => {
             make::export(&load::spec(file)?.joined()?, *format, *layout, out)
         }
