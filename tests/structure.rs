@@ -19,7 +19,7 @@ const FLOW: [&[&str]; 17] = [
     &["blocking", "locking"],
     &["sequence"],
     &["made"],
-    &["repeats", "flex", "chirality", "fabricate"],
+    &["repeats", "flex", "chirality", "fabricate", "sampling"],
     &["report"],
     &["verify", "atlas"],
     &["cli"],

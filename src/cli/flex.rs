@@ -8,7 +8,7 @@ use super::questions::argument;
 use super::told::{News, Told, Trouble};
 use super::words::fact;
 use crate::contact::Origin;
-use crate::flex::{self, Ask, Wanted};
+use crate::flex::{self, Ask, SAME_VERTEX, WORK, Wanted};
 use crate::report::answer::{self, FlexAnswer};
 use crate::report::content::{Chapter, Column, Table, Tone};
 use crate::spec::Subject;
@@ -32,9 +32,6 @@ pub struct Asked {
     #[arg(long, value_name = "TIME", value_parser = duration)]
     pub time: Option<Duration>,
 }
-
-/// Some minutes at most: hundreds of questions about twenty woven parts of eight crossings, or 400 about eighty bricks.
-pub const WORK: u64 = 3_000_000;
 
 /// How to ask.
 pub struct Settings {
@@ -70,10 +67,6 @@ pub fn flex(asked: &Asked) -> Result<Told, Trouble> {
     let settings = Settings { clearance_mm, wanted, work: asked.work, time: asked.time };
     Ok(told(&flexed(&placed, &settings)?))
 }
-
-/// Vertices of woven tiles are rounded to 2^-40 of a crossing; a frame set on parts' centres carries that to no more
-/// than 2^-30 across a thousand crossings.
-const SAME_VERTEX: f64 = 1.0 / (1_u64 << 30) as f64;
 
 pub fn flexed(placed: &Placed, settings: &Settings) -> Result<FlexAnswer, Trouble> {
     let joined = &placed.joined;

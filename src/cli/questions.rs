@@ -2,12 +2,11 @@
 //!
 //! Not promised: anything beyond what the stage that answers promises.
 
-use super::args::Common;
 use super::load::{self, Placed};
 use super::told::{News, Told, Trouble};
 use super::words;
 use crate::assembly::PartIx;
-use crate::atlas::{self, Ask};
+use crate::atlas;
 use crate::chirality::{
     self,
     answer::{Handedness, Hands, WarpIs},
@@ -15,7 +14,7 @@ use crate::chirality::{
 use crate::contact::Joined;
 use crate::fault::Fault;
 use crate::input;
-use crate::locking::{self, Check, Verdict};
+use crate::locking::{self, Verdict};
 use crate::report::answer::{self, Certificate, PlanAnswer, Sealed};
 use crate::report::file::write_whole;
 use crate::report::words as chapters;
@@ -23,25 +22,7 @@ use crate::sequence::clearance::with_clearance;
 use crate::sequence::{self, Outcome, Plan, Searched};
 use crate::verify;
 use crate::weave::{self, Weave};
-use serde::Serialize;
-use std::path::{Path, PathBuf};
-
-pub fn check(placed: &Placed, fix: Option<&str>) -> Result<Told, Trouble> {
-    let joined = &placed.joined;
-    let fix = fix.map(|id| part(joined, id)).transpose()?;
-    let check = locking::check(&joined.assembly, &joined.patches, fix);
-    Ok(told_check(placed, &check))
-}
-
-pub fn told_check(placed: &Placed, check: &Check) -> Told {
-    let answer = answer::check(&placed.joined, check, placed.source.clone());
-    let news = News::of(matches!(check.rigid, Verdict::Locked(_)));
-    let chapter = chapters::verdict(&placed.joined.assembly, check);
-    Told {
-        remarks: answer.remarks.clone(),
-        ..Told::new(news, &answer, &answer.name, "Does it lock?", chapter)
-    }
-}
+use std::path::Path;
 
 pub fn part(joined: &Joined, id: &str) -> Result<PartIx, Trouble> {
     let asm = &joined.assembly;
@@ -184,23 +165,4 @@ fn told_hands(hands: &Hands) -> Told {
         remarks: hands.remarks.clone(),
         ..Told::new(news, hands, &hands.name, "Hands", words::hands(hands))
     }
-}
-
-pub fn atlas(max_n: u32, out: &Path, common: &Common) -> Result<Told, Trouble> {
-    let ask = Ask::new(max_n);
-    let all = atlas::weaves(max_n).len();
-    let written = atlas::write(&ask, out, |row| {
-        if !common.quiet {
-            eprintln!("[{},{},{}] of {all} weaves", row.a, row.b, row.c);
-        }
-    })?;
-    let answer = AtlasAnswer { verb: "atlas", rows: &written.rows, files: &written.files };
-    Ok(Told::new(News::Good, &answer, &format!("weaves up to n = {max_n}"), "Atlas", words::atlas(&written)))
-}
-
-#[derive(Serialize)]
-struct AtlasAnswer<'a> {
-    verb: &'static str,
-    rows: &'a [atlas::Row],
-    files: &'a [PathBuf],
 }

@@ -3,9 +3,10 @@
 //! Not promised: that a question which failed stops the others; it is told as not run, with the reason.
 
 use super::args::Common;
+use super::check;
 use super::flex;
 use super::load::{self, Loaded, Placed};
-use super::make::{self, Checkers};
+use super::make;
 use super::questions;
 use super::repeats;
 use super::told::{News, Told, Trouble};
@@ -77,7 +78,7 @@ fn ask(placed: &Placed, common: &Common) -> Result<Asked, Trouble> {
     progress("is it locked");
     let check = placed.check();
     let pictures = pictures(placed, &check)?;
-    let check = questions::told_check(placed, &check);
+    let check = check::told(placed, &check, None);
     progress("how does it go together");
     let all: Vec<PartIx> = asm.ids().collect();
     let plan = questions::told_plan(placed, &questions::planned(placed, &all, 0.0));
@@ -148,7 +149,7 @@ fn everything(loaded: Loaded, out: &Path, common: &Common) -> Result<Told, Troub
         eprintln!("making the parts ...");
     }
     let folder = out.join("parts");
-    let made = make::made(&placed, None, &folder, Checkers::None)?;
+    let made = make::made(&placed, &folder)?;
     let fab = make::told_fab(&made, &folder);
     let mut files = vec![folder.display().to_string()];
     let mut keep = |name: &str, bytes: &[u8]| -> Result<(), Trouble> {
@@ -214,10 +215,10 @@ fn chapter(told: &Result<Told, String>) -> Answer<Chapter> {
 
 /// What is not built; said wherever a whole run is told.
 const LIMITS: [&str; 4] = [
-    "Molds, castings and their sheets are not built yet; parts with clearance and allowance are.",
+    "A run makes the parts alone; `weavelock fab` makes the package with plates, sheets and coupon. Molds are not built yet.",
     "Plans are straight moves of parts and groups; turns and moves in several stretches are not searched.",
     "Locked is first order at zero clearance; the least clearance that opens a lock is not searched for yet.",
-    "The tiles are those of the sampled sites; a certificate is not yet held against the curved bisectors.",
+    "The tiles are those of the sampled sites; the check says whether its verdict holds for the curved bisectors too.",
 ];
 
 fn input(placed: &Placed, asked: &Asked, parts: Answer<Chapter>, ledger: Answer<Chapter>) -> PageInput {
@@ -315,5 +316,6 @@ fn summary(
         chapters,
         closing,
         remarks: asked.remarks,
+        bare: None,
     }
 }

@@ -2,11 +2,11 @@
 //!
 //! Not promised: a word more than the answer carries.
 
-use crate::atlas::{Row, Written};
 use crate::chirality::answer::{Handedness, Hands, TileAnswer, WarpIs};
 use crate::report::answer::{WeaveAnswer, Word};
-use crate::report::content::{Chapter, Column, Table, Tone};
+use crate::report::content::{Chapter, Tone};
 use crate::verify::Verified;
+use crate::verify::certificate::{Arithmetic, Shown};
 
 pub fn fact(name: &str, value: impl Into<String>) -> (String, String) {
     (name.into(), value.into())
@@ -70,28 +70,6 @@ fn lower(hand: Handedness) -> String {
     format!("{hand:?}").to_lowercase()
 }
 
-pub fn atlas(written: &Written) -> Chapter {
-    let row = |r: &Row| {
-        let hand = |h: Option<String>| h.unwrap_or("-".into()).to_lowercase();
-        vec![
-            format!("[{},{},{}]", r.a, r.b, r.c),
-            r.family.clone(),
-            hand(r.tile.map(|t| format!("{t:?}"))),
-            hand(r.warp_is.map(|w| format!("{w:?}"))),
-            r.minimal_repeat.map_or(format!("none up to {}", r.most), |k| k.to_string()),
-        ]
-    };
-    let table = Table {
-        caption: "Weaves that hang together; least repetition at phase 0, swatch n x n".into(),
-        head: ["weave", "family", "tile", "warp is", "least k"].map(Column::words).to_vec(),
-        rows: written.rows.iter().map(row).collect(),
-    };
-    let headline =
-        format!("{} weaves, {} of them found there from before.", written.rows.len(), written.found);
-    let words = written.files.iter().map(|f| f.display().to_string()).collect();
-    Chapter { headline, words, tables: vec![table], ..Chapter::default() }
-}
-
 /// The verdict of a check that was told; undecided where it cannot be read.
 pub fn verdict_word(json: &str) -> Word {
     let read = serde_json::from_str::<crate::report::answer::CheckAnswer>(json);
@@ -100,5 +78,21 @@ pub fn verdict_word(json: &str) -> Word {
 
 pub fn verified(a: &Verified) -> Chapter {
     let (tone, headline) = if a.valid { (Tone::Good, "Valid.") } else { (Tone::Bad, "Not valid.") };
-    Chapter { tone, headline: headline.into(), words: vec![format!("{}.", a.why)], ..Chapter::default() }
+    let proof = |(about, p): (&String, &Shown)| {
+        let how = match p.arithmetic {
+            Arithmetic::Exact => "exact",
+            Arithmetic::RoundOff => "to round-off",
+            Arithmetic::None => "no claim",
+        };
+        let least = p.least_force.map_or(String::new(), |f| format!("; least force {f:.6} or more"));
+        fact(about, format!("{how}: {}{least}", p.how))
+    };
+    let facts = a.proofs.iter().map(proof).collect();
+    Chapter {
+        tone,
+        headline: headline.into(),
+        words: vec![format!("{}.", a.why)],
+        facts,
+        ..Chapter::default()
+    }
 }

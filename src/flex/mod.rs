@@ -20,6 +20,13 @@ use crate::sequence::{Fault, Plan};
 use std::time::Instant;
 use symmetry::Symmetry;
 
+/// Some minutes at most: hundreds of questions about twenty woven parts of eight crossings, or 400 about eighty bricks.
+pub const WORK: u64 = 3_000_000;
+
+/// Vertices of woven tiles are rounded to 2^-40 of a crossing; a frame set on parts' centres carries that to no more
+/// than 2^-30 across a thousand crossings.
+pub const SAME_VERTEX: f64 = 1.0 / (1_u64 << 30) as f64;
+
 /// What is asked.
 #[derive(Clone, Debug)]
 pub struct Ask {

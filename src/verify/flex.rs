@@ -4,7 +4,7 @@
 //! against the parts' vertices. Not checked: that sets called unproven are stuck (nothing is claimed of them), nor that
 //! larger minimal sets are all there.
 
-use super::{Verified, as_made, locked_alone, parts, plan, rebuild, same, sealed, verified};
+use super::{Proofs, Verified, as_made, locked_alone, parts, plan, rebuild, same, sealed, verified};
 use crate::assembly::{Assembly, PartIx};
 use crate::contact::Joined;
 use crate::fault::Faults;
@@ -43,15 +43,18 @@ fn within(a: &FlexAnswer) -> Result<f64, Faults> {
     })
 }
 
-fn check(joined: &Joined, a: &FlexAnswer, within: f64) -> Checked {
+fn check(joined: &Joined, a: &FlexAnswer, within: f64) -> Result<Proofs, String> {
+    let mut proofs = Proofs::new();
     sealed(&a.checksum, &FlexAnswer { checksum: String::new(), ..a.clone() })?;
     same("verb", a.verb.as_str(), "flex")?;
     if a.clearance_mm > 0.0 && !a.cores.is_empty() {
         return Err("first-order cores say nothing of parts with clearance".into());
     }
     for core in &a.cores {
-        locked_alone(joined, &core.parts, &core.certificate)
-            .map_err(|why| format!("core {}: {why}", core.parts.join(", ")))?;
+        let name = core.parts.join(", ");
+        let shown = locked_alone(joined, &core.parts, &core.certificate)
+            .map_err(|why| format!("core {name}: {why}"))?;
+        proofs.insert(name, shown);
     }
     let cores: Vec<Set> = a.cores.iter().map(|c| set(joined, &c.parts)).collect::<Result<_, _>>()?;
     bound(&cores, a.lower_bound)?;
@@ -60,7 +63,8 @@ fn check(joined: &Joined, a: &FlexAnswer, within: f64) -> Checked {
     }
     let planned = as_made(joined, a.clearance_mm)?;
     a.orbits.iter().try_for_each(|o| orbit(joined, &planned, &a.symmetries, o))?;
-    claims(joined, a, &cores)
+    claims(joined, a, &cores)?;
+    Ok(proofs)
 }
 
 fn set(joined: &Joined, ids: &[String]) -> Result<Set, String> {

@@ -3,8 +3,8 @@
 //!
 //! Not promised: that the swatches are the ones a reader would choose; each row names its own.
 
-use super::certificate::{self, About};
-use super::{Verified, as_made, plan, rebuild, same, sealed, verified};
+use super::certificate::{self, About, Shown};
+use super::{Proofs, Verified, as_made, plan, rebuild, same, sealed, verified};
 use crate::assembly::PartIx;
 use crate::assembly::layout::pieces;
 use crate::fault::Faults;
@@ -20,17 +20,21 @@ use std::path::Path;
 
 type Checked = Result<(), String>;
 
+/// A row by its name, with what its proof was found true for.
+type Told = Result<(String, Shown), String>;
+
 pub fn answer(a: &RepeatsAnswer) -> Result<Verified, Faults> {
     let rows: Vec<&RepeatsRow> = a.table.iter().chain(a.every_size.iter().map(|c| &c.base)).collect();
     let woven: Vec<WovenSpec> = rows.par_iter().map(|r| woven(r)).collect::<Result<_, _>>()?;
-    let each: Result<Vec<Checked>, Faults> = rows.par_iter().zip(&woven).map(|(r, w)| row(r, w)).collect();
+    let each: Result<Vec<Told>, Faults> =
+        rows.par_iter().zip(&woven).enumerate().map(|(at, (r, w))| row(at, r, w)).collect();
     let each = each?;
     let found = sealed(&a.checksum, &RepeatsAnswer { checksum: String::new(), ..a.clone() })
         .and_then(|()| same("verb", a.verb.as_str(), "repeats"))
-        .and_then(|()| each.into_iter().collect())
         .and_then(|()| one_weave(&woven))
         .and_then(|()| claims(a))
-        .and_then(|()| a.every_size.iter().zip(&woven[a.table.len()..]).try_for_each(|(c, w)| class(c, w)));
+        .and_then(|()| a.every_size.iter().zip(&woven[a.table.len()..]).try_for_each(|(c, w)| class(c, w)))
+        .and_then(|()| each.into_iter().collect::<Result<Proofs, String>>());
     let good = format!("the proofs of {} swatches hold, and the least k follows from them", rows.len());
     Ok(verified(found, good))
 }
@@ -53,12 +57,12 @@ fn one_weave(all: &[WovenSpec]) -> Checked {
 }
 
 /// The row says what its spec says, and its proof and plan hold.
-fn row(r: &RepeatsRow, w: &WovenSpec) -> Result<Checked, Faults> {
+fn row(at: usize, r: &RepeatsRow, w: &WovenSpec) -> Result<Told, Faults> {
     let joined = rebuild(&Source { file: FILE.into(), text: r.spec.clone() })?;
-    let name = format!("k = {}, phase {}, {} x {}", r.k, r.phase, r.swatch.wefts, r.swatch.warps);
+    let name = format!("row {at}: k = {}, phase {}, {} x {}", r.k, r.phase, r.swatch.wefts, r.swatch.warps);
     let asm = &joined.assembly;
     let still: Vec<String> = asm.parts.iter().take(1).map(|p| p.id.clone()).collect();
-    let checked = (|| {
+    let checked = (|| -> Result<Shown, String> {
         let (wefts, warps) = (r.swatch.wefts, r.swatch.warps);
         let layout = Layout::Swatch { wefts, warps, cut: Cut::Tiles, repeat: r.k, phase: r.phase };
         same("swatch", &w.layout, &layout)?;
@@ -66,15 +70,15 @@ fn row(r: &RepeatsRow, w: &WovenSpec) -> Result<Checked, Faults> {
         same("profile", &r.profile, &profile(w))?;
         same("parts", r.parts, asm.parts.len())?;
         same("rigid", r.rigid, r.proof.verdict)?;
-        certificate::proof(asm, &joined.patches, &r.proof, &still, About::RigidMotions)?;
-        let Some(made) = &r.as_made else { return Ok(()) };
+        let shown = certificate::proof(asm, &joined.patches, &r.proof, &still, About::RigidMotions)?;
+        let Some(made) = &r.as_made else { return Ok(shown) };
         match (made.verdict.as_str(), &made.plan) {
-            ("not-found", None) => Ok(()),
+            ("not-found", None) => Ok(shown),
             ("comes-apart", Some(p)) => {
                 same("outcome of a plan", p.outcome, Outcome::Assembled)?;
                 let all: Vec<PartIx> = asm.ids().collect();
                 match plan::check_of(&as_made(&joined, made.clearance_mm)?, &all, p) {
-                    plan::Checked::Valid { .. } => Ok(()),
+                    plan::Checked::Valid { .. } => Ok(shown),
                     plan::Checked::Invalid { step, why, .. } => Err(format!("step {}: {why}", step + 1)),
                     plan::Checked::Undecided { why } => Err(why),
                 }
@@ -82,7 +86,10 @@ fn row(r: &RepeatsRow, w: &WovenSpec) -> Result<Checked, Faults> {
             _ => Err("what is said of the parts as made does not come with what belongs to it".into()),
         }
     })();
-    Ok(checked.map_err(|why: String| format!("{name}: {why}")))
+    Ok(match checked {
+        Ok(shown) => Ok((name, shown)),
+        Err(why) => Err(format!("{name}: {why}")),
+    })
 }
 
 fn profile(w: &WovenSpec) -> ProfileAnswer {
