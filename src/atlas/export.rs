@@ -51,7 +51,8 @@ flexible_lower,flexible_upper,flexible_status,release_clearance_low,release_clea
 equivalents,note,rise,lift,cover,samples";
 
 fn csv(table: &Final) -> String {
-    let rows: String = table.rows.iter().map(|r| fields(r, &table.ask).map(quoted).join(",") + "\n").collect();
+    let rows: String =
+        table.rows.iter().map(|r| fields(r, &table.ask).map(quoted).join(",") + "\n").collect();
     format!("{COLUMNS}\n{rows}")
 }
 
@@ -64,8 +65,7 @@ fn fields(row: &Row, ask: &Ask) -> [String; 24] {
     let length = |v: Option<f64>| or_empty(v.map(|v| v.to_string()));
     let (f, r, s) = (&row.flexible, &row.release_clearance, &ask.settings);
     let phases: Vec<String> = row.by_phase.iter().map(told).collect();
-    let others: Vec<String> =
-        row.equivalents.iter().map(|e| format!("{} {}", e.abc, e.by.word())).collect();
+    let others: Vec<String> = row.equivalents.iter().map(|e| format!("{} {}", e.abc, e.by.word())).collect();
     [
         row.a.to_string(),
         row.b.to_string(),

@@ -48,7 +48,8 @@ pub struct Journal {
 impl Journal {
     /// Opens or begins the file; rows of a table that agrees but for its size are kept.
     pub fn open(path: &Path, head: Head) -> Result<Journal, Faults> {
-        let old = OpenOptions::new().create(true).append(true).open(path).map_err(|e| unwritable(path, &e))?;
+        let old =
+            OpenOptions::new().create(true).append(true).open(path).map_err(|e| unwritable(path, &e))?;
         lock(&old, path)?;
         let rows = match read(path)? {
             Some((found, rows)) => {
@@ -120,8 +121,8 @@ pub fn read(path: &Path) -> Result<Option<(Head, Rows)>, Faults> {
     let at = |k: usize| Some(Place { line: k + 1, column: 1 });
     let wrong = |k, what: &str, e: serde_json::Error| fault(path, at(k), format!("{what}: {e}"), ANEW);
     let Some((k, first)) = lines.next() else { return Ok(None) };
-    let head: Head =
-        serde_json::from_str(first).map_err(|e| wrong(k, "this is no head of an atlas of this program", e))?;
+    let head: Head = serde_json::from_str(first)
+        .map_err(|e| wrong(k, "this is no head of an atlas of this program", e))?;
     let mut rows = Rows::new();
     for (k, line) in lines {
         let row: Row = serde_json::from_str(line).map_err(|e| wrong(k, "this is no row of an atlas", e))?;

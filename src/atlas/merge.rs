@@ -5,8 +5,8 @@
 
 use super::export::{Files, Final};
 use super::journal::{Head, Rows, fault, json, rank, read, text, unwritable};
-use super::run::Written;
 use super::row::Row;
+use super::run::Written;
 use super::table::{Ask, share};
 use super::weaves::Abc;
 use crate::fault::{Fault, Faults};
@@ -33,7 +33,8 @@ pub fn merge(inputs: &[PathBuf], folder: &Path) -> Result<Written, Faults> {
     Ok(Written { found: rows.len(), rows, files })
 }
 
-const GIVE: &str = "give the files atlas.I-of-M.jsonl that `weavelock atlas --shard I/M` wrote, or their folders";
+const GIVE: &str =
+    "give the files atlas.I-of-M.jsonl that `weavelock atlas --shard I/M` wrote, or their folders";
 
 fn read_all(inputs: &[PathBuf]) -> Result<Vec<Read>, Faults> {
     let (mut faults, mut all) = (Vec::new(), Vec::new());
@@ -75,7 +76,14 @@ fn one_table(read: &[Read]) -> Result<Ask, Faults> {
         return Err(fault(Path::new("--merge"), None, "nothing to join".into(), GIVE).into());
     };
     let other = |(path, other, _): &Read| {
-        let what = || format!("is another table than {}: {} against {}", first.display(), json(&other.ask), json(&head.ask));
+        let what = || {
+            format!(
+                "is another table than {}: {} against {}",
+                first.display(),
+                json(&other.ask),
+                json(&head.ask)
+            )
+        };
         (other.ask != head.ask || other.atlas != head.atlas)
             .then(|| fault(path, None, what(), "run all shards with the same flags"))
     };
@@ -101,7 +109,8 @@ fn joined(read: &[Read], ask: &Ask) -> Result<Rows, Faults> {
     }
     faults.extend(missing(read, ask, |abc| from.contains_key(&abc.rank())));
     let wanted: Vec<Abc> = share(ask, None);
-    let rows = wanted.iter().filter_map(|abc| from.get(&abc.rank()).map(|(_, row)| (abc.rank(), (*row).clone())));
+    let rows =
+        wanted.iter().filter_map(|abc| from.get(&abc.rank()).map(|(_, row)| (abc.rank(), (*row).clone())));
     Faults(faults).or(rows.collect())
 }
 
@@ -115,7 +124,11 @@ fn missing(read: &[Read], ask: &Ask, has: impl Fn(Abc) -> bool) -> Option<Fault>
         return None;
     }
     let names: Vec<String> = lacking.iter().take(MOST_NAMES).map(Abc::to_string).collect();
-    let more = if lacking.len() > MOST_NAMES { format!(" and {} more", lacking.len() - MOST_NAMES) } else { String::new() };
+    let more = if lacking.len() > MOST_NAMES {
+        format!(" and {} more", lacking.len() - MOST_NAMES)
+    } else {
+        String::new()
+    };
     let what = format!("{} rows are in no file: {}{more}", lacking.len(), names.join(", "));
     let count = read.iter().find_map(|(_, head, _)| head.shard.map(|s| s.count()));
     let hint = match count {

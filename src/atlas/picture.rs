@@ -177,7 +177,11 @@ fn frame(x: f64, y: f64, side: f64) -> Mark {
 fn hatch(x: f64, y: f64, side: f64) -> Vec<Mark> {
     let line = |k: usize| {
         let d = side * k as f64 / 4.0;
-        let points = if k <= 4 { vec![[x, y + d], [x + d, y]] } else { vec![[x + d - side, y + side], [x + side, y + d - side]] };
+        let points = if k <= 4 {
+            vec![[x, y + d], [x + d, y]]
+        } else {
+            vec![[x + d - side, y + side], [x + side, y + d - side]]
+        };
         Mark::Line { points, ink: [190, 190, 194], width: 0.8 }
     };
     (1..8).map(line).collect()
@@ -201,7 +205,10 @@ fn strip(phases: &[AtPhase], x: f64, y: f64, side: f64) -> Vec<Mark> {
 fn hand(hand: Option<Handedness>, x: f64, y: f64, ink: Rgb) -> Vec<Mark> {
     let r = 4.5;
     let triangle = |side: f64| {
-        vec![Mark::Fill { points: vec![[x + side * r, y], [x - side * r, y - r], [x - side * r, y + r]], ink }]
+        vec![Mark::Fill {
+            points: vec![[x + side * r, y], [x - side * r, y - r], [x - side * r, y + r]],
+            ink,
+        }]
     };
     match hand {
         Some(Handedness::Left) => triangle(-1.0),
@@ -228,7 +235,8 @@ fn kin(warp: Option<WarpIs>) -> &'static str {
 }
 
 fn legend(y: f64, ask: &Ask) -> Vec<Mark> {
-    let text = |x: f64, line: usize, t: &str| words(x, y + 22.0 * line as f64 + 14.0, 11.0, Anchor::Start, INK, t);
+    let text =
+        |x: f64, line: usize, t: &str| words(x, y + 22.0 * line as f64 + 14.0, 11.0, Anchor::Start, INK, t);
     let mut marks = Vec::new();
     let mut x = MARGIN;
     for k in 1..=ask.most.min(SEQUENCE.len() as u32) {

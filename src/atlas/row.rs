@@ -113,7 +113,8 @@ pub fn row(abc: Abc, ask: &Ask) -> Result<Row, Faults> {
     let phases: Vec<_> = phases(ask, a + b).into_par_iter().map(|p| at_phase(&weave, ask, p)).collect();
     let flexible = flexible(&weave, ask);
     let faults = phases.iter().filter_map(|p| p.as_ref().err().map(Faults::to_string));
-    let note: Vec<String> = hands.as_ref().err().map(HandsError::to_string).into_iter().chain(faults).collect();
+    let note: Vec<String> =
+        hands.as_ref().err().map(HandsError::to_string).into_iter().chain(faults).collect();
     let by_phase: Vec<AtPhase> = phases.into_iter().flatten().collect();
     let hands = hands.ok();
     Ok(Row {

@@ -81,7 +81,8 @@ fn add<F: FnMut(Progress)>(shared: &Mutex<Shared<F>>, row: Row) -> Result<(), Fa
     shared.journal.append(row)?;
     let Progress { done, worked, left, all, .. } = shared.progress;
     let work = cost(abc);
-    shared.progress = Progress { abc, done: done + 1, all, worked: worked + work, left: left.saturating_sub(work) };
+    shared.progress =
+        Progress { abc, done: done + 1, all, worked: worked + work, left: left.saturating_sub(work) };
     let progress = shared.progress;
     (shared.told)(progress);
     Ok(())

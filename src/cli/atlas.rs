@@ -61,7 +61,8 @@ pub enum Cuts {
 
 impl Asked {
     fn ask(&self) -> Result<Ask, Trouble> {
-        let settings = Settings { rise: self.rise, lift: self.lift, cover: self.cover, samples: self.samples };
+        let settings =
+            Settings { rise: self.rise, lift: self.lift, cover: self.cover, samples: self.samples };
         super::questions::profile(self.rise, self.lift, self.cover, self.samples)?;
         Ok(Ask {
             max_n: self.max_n,

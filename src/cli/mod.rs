@@ -4,6 +4,7 @@
 
 pub mod args;
 pub mod atlas;
+mod hands;
 mod load;
 mod make;
 mod questions;
@@ -47,7 +48,7 @@ fn dispatch(args: &Args) -> Result<Told, Trouble> {
         }
         Some(Verb::Flex { file }) => questions::flex(&load::spec(file)?.joined()?),
         Some(Verb::Repeats(asked)) => questions::repeats(asked),
-        Some(Verb::Chirality { subject }) => questions::chirality(subject),
+        Some(Verb::Chirality { subject, export }) => hands::chirality(subject, export.as_deref()),
         Some(Verb::Weave { subject, svg, wif }) => questions::weave(subject, svg.as_deref(), wif.as_deref()),
         Some(Verb::Fab { file, process, out, check }) => {
             make::fab(&load::spec(file)?.joined()?, process.as_deref(), out, make::Checkers::of(*check))

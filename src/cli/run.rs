@@ -3,6 +3,7 @@
 //! Not promised: that a question which failed stops the others; it is told as not run, with the reason.
 
 use super::args::Common;
+use super::hands;
 use super::load::{self, Loaded, Placed};
 use super::make::{self, Checkers};
 use super::questions;
@@ -107,7 +108,7 @@ fn woven(placed: &Placed, progress: &impl Fn(&str)) -> Result<Woven, Trouble> {
     let search = Search { wefts: n.0, warps: n.0, phases: vec![phase], most: MOST_REPEATS };
     let repeats = questions::repeated(&woven.weave, &name(&woven.weave), &woven.profile, &search);
     let repeats = repeats.map(|a| questions::told_repeats(&a)).map_err(|t| t.to_string());
-    let chirality = questions::told_chirality(placed).map_err(|t| t.to_string());
+    let chirality = hands::told_chirality(placed).map_err(|t| t.to_string());
     Ok((Some(weave), repeats, chirality))
 }
 

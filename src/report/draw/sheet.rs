@@ -22,10 +22,23 @@ pub enum Anchor {
 /// Something drawn; lengths in units of the sheet, y down.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Mark {
-    Fill { points: Vec<[f64; 2]>, ink: Rgb },
-    Line { points: Vec<[f64; 2]>, ink: Rgb, width: f64 },
+    Fill {
+        points: Vec<[f64; 2]>,
+        ink: Rgb,
+    },
+    Line {
+        points: Vec<[f64; 2]>,
+        ink: Rgb,
+        width: f64,
+    },
     /// `at`: on the baseline; `size`: of the letters, as in CSS.
-    Words { at: [f64; 2], size: f64, anchor: Anchor, ink: Rgb, text: String },
+    Words {
+        at: [f64; 2],
+        size: f64,
+        anchor: Anchor,
+        ink: Rgb,
+        text: String,
+    },
 }
 
 /// A white sheet with marks, later ones over earlier ones.
@@ -60,7 +73,8 @@ impl Sheet {
         let pixels = |length: f64| ((length * scale).ceil() as u32).clamp(1, Size::LONGEST);
         let size = Size::new(pixels(self.width), pixels(self.height))
             .map_err(|e: BadSize| io::Error::new(io::ErrorKind::InvalidInput, e.to_string()))?;
-        let mut raster = Raster { size, scale, rgb: vec![1.0; size.width() as usize * size.height() as usize * 3] };
+        let mut raster =
+            Raster { size, scale, rgb: vec![1.0; size.width() as usize * size.height() as usize * 3] };
         self.marks.iter().for_each(|m| raster.mark(m));
         raster.image().png()
     }
@@ -86,7 +100,9 @@ fn svg_mark(mark: &Mark) -> String {
             };
             let text = text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;");
             let ink = hex(*ink);
-            format!("<text x=\"{x:.2}\" y=\"{y:.2}\" font-size=\"{size}\" text-anchor=\"{anchor}\" fill=\"{ink}\">{text}</text>\n")
+            format!(
+                "<text x=\"{x:.2}\" y=\"{y:.2}\" font-size=\"{size}\" text-anchor=\"{anchor}\" fill=\"{ink}\">{text}</text>\n"
+            )
         }
     }
 }
@@ -122,7 +138,8 @@ impl Raster {
                 };
                 let from = [at[0] - along * strokes::width(text) * size, at[1]];
                 for stroke in strokes::of(text) {
-                    let placed: Vec<_> = stroke.iter().map(|p| [from[0] + p[0] * size, from[1] - p[1] * size]).collect();
+                    let placed: Vec<_> =
+                        stroke.iter().map(|p| [from[0] + p[0] * size, from[1] - p[1] * size]).collect();
                     self.line(&placed, *ink, strokes::PEN * size);
                 }
             }
@@ -161,7 +178,8 @@ impl Raster {
 
     fn image(&self) -> Image {
         let byte = |c: &f32| (c * 255.0).round() as u8;
-        let rgba = self.rgb.chunks_exact(3).flat_map(|p| [byte(&p[0]), byte(&p[1]), byte(&p[2]), u8::MAX]).collect();
+        let rgba =
+            self.rgb.chunks_exact(3).flat_map(|p| [byte(&p[0]), byte(&p[1]), byte(&p[2]), u8::MAX]).collect();
         Image { size: self.size, rgba }
     }
 }

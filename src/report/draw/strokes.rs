@@ -132,7 +132,8 @@ pub fn of(text: &str) -> Vec<Vec<[f64; 2]>> {
     let mut from = 0.0;
     let mut all = Vec::new();
     for sign in text.chars() {
-        let own = strokes(sign).split(';').map(|s| points(s).map(|[x, y]| [(from + x) * UNIT, y * UNIT]).collect());
+        let own =
+            strokes(sign).split(';').map(|s| points(s).map(|[x, y]| [(from + x) * UNIT, y * UNIT]).collect());
         all.extend(own.filter(|s: &Vec<[f64; 2]>| !s.is_empty()));
         from += advance(sign);
     }
