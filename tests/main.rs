@@ -1,5 +1,6 @@
 //! One test binary, a file for each kind of promise. Slow tests are marked `#[ignore]`; `tests/run` runs them too.
 
+mod atlas;
 mod bad_input;
 mod certificates;
 mod cli;

@@ -6,6 +6,7 @@ pub mod args;
 pub mod atlas;
 mod check;
 pub mod flex;
+mod hands;
 mod load;
 mod make;
 mod package;
@@ -55,7 +56,7 @@ fn dispatch(args: &Args) -> Result<Told, Trouble> {
         }
         Some(Verb::Flex(asked)) => flex::flex(asked),
         Some(Verb::Repeats(asked)) => repeats::repeats(asked),
-        Some(Verb::Chirality { subject }) => questions::chirality(subject),
+        Some(Verb::Chirality { subject, export }) => hands::chirality(subject, export.as_deref()),
         Some(Verb::Weave { subject, svg, wif }) => questions::weave(subject, svg.as_deref(), wif.as_deref()),
         Some(Verb::Fab(asked)) => package::fab(&load::spec(&asked.file)?.joined()?, asked, &args.common),
         Some(Verb::Processes { name }) => package::processes(name.as_deref()),
