@@ -32,7 +32,7 @@ use std::path::{Path, PathBuf};
 pub fn check(placed: &Placed, fix: Option<&str>) -> Result<Told, Trouble> {
     let joined = &placed.joined;
     let fix = fix.map(|id| part(joined, id)).transpose()?;
-    let check = locking::check(&joined.assembly, &joined.patches, fix);
+    let check = locking::check_loose(&joined.assembly, &joined.patches, &joined.loose, fix);
     Ok(told_check(placed, &check))
 }
 

@@ -27,7 +27,7 @@ use parry3d_f64::bounding_volume::{Aabb, BoundingVolume};
 use parry3d_f64::partitioning::{Bvh, BvhBuildStrategy};
 use rayon::prelude::*;
 use shape::Shape;
-use touch::Touch;
+use touch::{Passed, Touch};
 
 /// What is known of a patch beside its polygon.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -62,6 +62,9 @@ pub struct Assumed {
     /// One point, or the two ends of a stretch, in the assembly's frame.
     pub corners: Vec<DVec3>,
     pub why: Why,
+    /// The planes between two convex corners: their normals from `a` to `b` are combinations of these. None where
+    /// they are not known.
+    pub normals: Vec<DVec3>,
 }
 
 /// The contacts of an assembly of meshes; `facts` runs parallel to `patches`.
@@ -181,9 +184,11 @@ fn touching(a: &Shape, b: &Shape, origin: DVec3, tolerance: f64) -> MeshContacts
     });
     let rest = small.rows.iter().map(|t| (patch(t.normal, &t.corners), small_facts(t, tolerance)));
     let (patches, facts) = flat.chain(rest).unzip();
-    let assumed = small.passed.iter();
-    let assumed =
-        assumed.map(|q| Assumed { a: a.part, b: b.part, corners: back(&q.corners), why: q.why }).collect();
+    let assumed = |q: &Passed| {
+        let (corners, normals) = (back(&q.corners), q.normals.clone());
+        Assumed { a: a.part, b: b.part, corners, why: q.why, normals }
+    };
+    let assumed = small.passed.iter().map(assumed).collect();
     MeshContacts { patches, facts, assumed, settled: Assumption::default() }
 }
 

@@ -43,6 +43,14 @@ pub enum Why {
 pub(super) struct Passed {
     pub corners: Vec<DVec3>,
     pub why: Why,
+    /// The admissible normals are combinations of these; none where they are not known.
+    pub normals: Vec<DVec3>,
+}
+
+impl Passed {
+    fn alike(&self, other: &Passed) -> bool {
+        self.why == other.why && self.normals == other.normals
+    }
 }
 
 #[derive(Default)]
@@ -96,10 +104,11 @@ fn add(all: &mut Touches, place: &Place, faces: &[Flush], tolerance: f64) {
             all.rows.extend(new);
         }
         Err(_) if by_face || by_row => {}
-        Err(why) => {
+        Err((why, normals)) => {
             let listed = |q: &Passed| covered(&|p| on_stretch(&q.corners, p, reach));
             if !all.passed.iter().any(listed) {
-                list(&mut all.passed, Passed { corners: place.corners.clone(), why }, reach);
+                let corners = place.corners.clone();
+                list(&mut all.passed, Passed { corners, why, normals }, reach);
             }
         }
     }
@@ -108,11 +117,11 @@ fn add(all: &mut Touches, place: &Place, faces: &[Flush], tolerance: f64) {
 /// Adds to the list; a stretch that goes on where another one ends makes that one longer.
 fn list(passed: &mut Vec<Passed>, new: Passed, reach: f64) {
     let longer =
-        passed.iter().position(|q| q.why == new.why && continued(&q.corners, &new.corners, reach).is_some());
+        passed.iter().position(|q| q.alike(&new) && continued(&q.corners, &new.corners, reach).is_some());
     match longer.and_then(|k| continued(&passed[k].corners, &new.corners, reach).map(|c| (k, c))) {
         Some((k, corners)) => {
             passed.remove(k);
-            list(passed, Passed { corners, why: new.why }, reach);
+            list(passed, Passed { corners, ..new }, reach);
         }
         None => passed.push(new),
     }
@@ -144,7 +153,7 @@ fn angle(m: DVec3, n: DVec3) -> f64 {
 }
 
 /// The normals, from the first to the second, of the rows that hold at a place, and how well they are known.
-fn verdict(place: &Place) -> Result<Vec<(DVec3, f64)>, Why> {
+fn verdict(place: &Place) -> Result<Vec<(DVec3, f64)>, (Why, Vec<DVec3>)> {
     let yields = |l: &Local| matches!(l.form, Form::Flat | Form::Reflex);
     let own = place.a.normals.iter().map(|&n| (n, place.a.known)).filter(|_| yields(place.a));
     let other = place.b.normals.iter().map(|&n| (-n, place.b.known)).filter(|_| yields(place.b));
@@ -153,13 +162,13 @@ fn verdict(place: &Place) -> Result<Vec<(DVec3, f64)>, Why> {
         return Ok(rows);
     }
     if place.a.form == Form::Saddle || place.b.form == Form::Saddle {
-        return Err(Why::Saddle);
+        return Err((Why::Saddle, Vec::new()));
     }
     match separation(&place.a.normals, &place.b.normals) {
         Separation::One(n) => Ok(vec![(n, of_edges(place.a, place.b))]),
-        Separation::Many => Err(Why::ManyNormals),
-        Separation::None => Err(Why::NoNormal),
-        Separation::Undecided => Err(Why::ManyFaces),
+        Separation::Many(normals) => Err((Why::ManyNormals, normals)),
+        Separation::None => Err((Why::NoNormal, Vec::new())),
+        Separation::Undecided => Err((Why::ManyFaces, Vec::new())),
     }
 }
 
