@@ -48,8 +48,8 @@ fn excused(made: &Made, put: &Put) -> Option<&'static str> {
         "octahedron-in-case" if single => {
             Some("corners on walls turn only while they stand exactly opposite")
         }
-        "tiny-key" | "tiny-key-shut" if put.format == Format::Obj(4) => {
-            Some("a part of 0.01 mm has two digits left")
+        "tiny-key" | "tiny-key-shut" if put.format == Format::ObjSignificant(6) => {
+            Some("a part of 0.01 mm beside one of a metre has one digit left")
         }
         _ => None,
     }

@@ -129,12 +129,15 @@ pub fn mesh_patches(
         all.assumed.extend(c.assumed);
         all
     });
-    Ok(with_settled_normals(all))
+    Ok(with_settled_normals(all, tolerance))
 }
 
 /// The contacts with normals made one that cannot be told apart, and corners moved into the planes of theirs.
-fn with_settled_normals(mut all: MeshContacts) -> MeshContacts {
-    let given = all.patches.iter().zip(&all.facts).map(|(p, f)| Direction { n: p.normal, known: f.known });
+fn with_settled_normals(mut all: MeshContacts, tolerance: f64) -> MeshContacts {
+    let given = all.patches.iter().zip(&all.facts).map(|(p, f)| {
+        // No corner moves by more than twice the tolerance.
+        Direction { n: p.normal, known: f.known.min(tolerance / radius(&p.corners)) }
+    });
     let (normals, assumption) = settled(&given.collect::<Vec<_>>());
     for (patch, d) in all.patches.iter_mut().zip(normals) {
         if d.n != patch.normal {
@@ -145,6 +148,12 @@ fn with_settled_normals(mut all: MeshContacts) -> MeshContacts {
     }
     all.settled = assumption;
     all
+}
+
+/// From the middle of the corners to the farthest.
+fn radius(corners: &[DVec3]) -> f64 {
+    let middle = corners.iter().sum::<DVec3>() / corners.len() as f64;
+    corners.iter().map(|p| p.distance(middle)).fold(0.0, f64::max)
 }
 
 /// Middle of the assembly's box: coordinates about it are as small as they can be.

@@ -13,6 +13,8 @@ use super::overlap::segment_distance;
 use super::polygon;
 use super::shape::{Shape, around};
 use glam::{DVec2, DVec3};
+use parry3d_f64::bounding_volume::{Aabb, BoundingVolume};
+use parry3d_f64::partitioning::{Bvh, BvhBuildStrategy};
 use std::collections::BTreeMap;
 
 /// A contact of one corner or two, with its unit normal from the first shape to the second.
@@ -62,6 +64,7 @@ pub(super) struct Touches {
 /// All contacts smaller than a face that the given faces do not say already.
 pub(super) fn touches(a: &Shape, b: &Shape, faces: &[Flush], tolerance: f64) -> Touches {
     let mut all = Touches::default();
+    let given = Given::new(faces, 2.0 * tolerance);
     let places = along_faces(a, b, tolerance)
         .into_iter()
         .chain(along_faces(b, a, tolerance).into_iter().map(Place::turned))
@@ -70,7 +73,7 @@ pub(super) fn touches(a: &Shape, b: &Shape, faces: &[Flush], tolerance: f64) -> 
         .chain(vertices(b, a, tolerance).into_iter().map(Place::turned))
         .chain(edge_pairs(a, b, tolerance, Pairing::Across));
     for place in places {
-        add(&mut all, &place, faces, tolerance);
+        add(&mut all, &place, &given);
     }
     all
 }
@@ -88,16 +91,39 @@ impl Place<'_> {
     }
 }
 
-fn add(all: &mut Touches, place: &Place, faces: &[Flush], tolerance: f64) {
-    let reach = 2.0 * tolerance;
+/// The faces on which the shapes lie flat, with a search tree over them.
+struct Given<'a> {
+    faces: &'a [Flush],
+    tree: Bvh,
+    /// How near is there, in model units.
+    reach: f64,
+}
+
+impl Given<'_> {
+    fn new(faces: &[Flush], reach: f64) -> Given<'_> {
+        let boxes: Vec<Aabb> =
+            faces.iter().map(|f| around(f.corners.iter().copied()).loosened(reach)).collect();
+        Given { faces, tree: Bvh::from_leaves(BvhBuildStrategy::Binned, &boxes), reach }
+    }
+
+    /// The faces on which p stands.
+    fn at(&self, p: DVec3) -> impl Iterator<Item = &Flush> {
+        let point = around(std::iter::once(p));
+        let near = self.tree.intersect_aabb(&point).map(|k| &self.faces[k as usize]).collect::<Vec<_>>();
+        near.into_iter().filter(move |f| on_polygon(f, p, self.reach))
+    }
+}
+
+fn add(all: &mut Touches, place: &Place, given: &Given) {
+    let reach = given.reach;
     let covered = |on: &dyn Fn(DVec3) -> bool| place.corners.iter().all(|&p| on(p));
-    let by_face = covered(&|p| faces.iter().any(|f| on_polygon(f, p, reach)));
+    let by_face = covered(&|p| given.at(p).next().is_some());
     let by_row = covered(&|p| all.rows.iter().any(|t| on_stretch(&t.corners, p, reach)));
     match verdict(place) {
         // Two convex corners on a common face are kept apart by it: their one plane is the face's own.
         Ok(_) if by_face && place.a.form == Form::Convex && place.b.form == Form::Convex => {}
         Ok(normals) => {
-            let says = |n: DVec3, p: DVec3| known(all, faces, n, p, reach);
+            let says = |n: DVec3, p: DVec3| known(all, given, n, p);
             let new = normals.into_iter().filter(|&(n, _)| !covered(&|p| says(n, p)));
             let touch = |(normal, known)| Touch { normal, known, corners: place.corners.clone() };
             let new: Vec<Touch> = new.map(touch).collect();
@@ -140,9 +166,9 @@ fn continued(p: &[DVec3], q: &[DVec3], reach: f64) -> Option<Vec<DVec3>> {
 
 /// Whether a row with this normal is there at p already. A face's normal is the mean of two that differ by
 /// its tilt.
-fn known(all: &Touches, faces: &[Flush], n: DVec3, p: DVec3, reach: f64) -> bool {
-    faces.iter().any(|f| angle(f.normal, n) <= f.tilt + SAME && on_polygon(f, p, reach))
-        || all.rows.iter().any(|t| angle(t.normal, n) <= SAME && on_stretch(&t.corners, p, reach))
+fn known(all: &Touches, given: &Given, n: DVec3, p: DVec3) -> bool {
+    given.at(p).any(|f| angle(f.normal, n) <= f.tilt + SAME)
+        || all.rows.iter().any(|t| on_stretch(&t.corners, p, given.reach) && angle(t.normal, n) <= SAME)
 }
 
 /// Rows whose normals differ by less (radians) say the same: round-off of unit normals.
