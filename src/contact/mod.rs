@@ -3,6 +3,8 @@
 //! Between woven tiles contacts are known by identity of sites; between meshes they are searched within the user's
 //! tolerance. Not promised: contacts of meshes that lie farther apart than the tolerance, or have no normal.
 
+pub mod chord;
+mod curve;
 pub mod mesh;
 pub mod woven;
 
