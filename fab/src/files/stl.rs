@@ -27,8 +27,24 @@ pub fn settled(solid: &Solid) -> Option<(Mesh, f64)> {
     let (lo, hi) = solid.mesh().bounds();
     let snap = snap_distance(lo.abs().max(hi.abs()).max_element());
     let sizes = std::iter::successors(Some(FINEST * snap), |s| Some(s * 2.0)).take_while(|s| *s <= COARSEST);
-    let mut tries = sizes.map(|size| (snapped(&solid.plain(size).mesh()), size));
+    let mut tries = sizes.map(|size| (mended(snapped(&solid.plain(size).mesh()), size), size));
     tries.find(|(mesh, _)| mesh.closure() == Closure::Closed)
+}
+
+/// The mesh with both ends of each edge united that is shorter than `size` and not between two opposite triangles.
+fn mended(mesh: Mesh, size: f64) -> Mesh {
+    let short: Vec<(u32, u32)> = mesh
+        .loose_edges()
+        .into_iter()
+        .filter(|&(a, b)| mesh.vertices[a as usize].distance(mesh.vertices[b as usize]) < size)
+        .collect();
+    if short.is_empty() {
+        return mesh;
+    }
+    let mut vertices = mesh.vertices;
+    short.iter().for_each(|&(a, b)| vertices[b as usize] = vertices[a as usize]);
+    let points = vertices.iter().map(|v| v.to_array().map(|x| x as f32 + 0.0)).collect();
+    united(points, mesh.triangles.into_iter())
 }
 
 /// Two corners this many snaps apart stay apart when each moves by one.

@@ -43,8 +43,9 @@ fn stage(mold: &Mold, piece: &Piece, batch: &mut Batch) -> Result<Mesh, MoldErro
 
 fn measured(mold: &Mold, back: &[Mesh]) -> Result<Vec<Measured>, MoldError> {
     let find = |name: &str| mold.pieces.iter().position(|p| p.name == name).map(|k| &back[k]);
-    match (mold.route, find("lower"), find("upper")) {
-        (Route::Rigid, Some(lower), Some(upper)) => Ok(checks::rigid(mold, &Halves { lower, upper })?),
+    match (mold.route, find("lower"), find("upper"), find("board")) {
+        (Route::Rigid, Some(lower), Some(upper), _) => Ok(checks::rigid(mold, &Halves { lower, upper })?),
+        (Route::Silicone, _, _, Some(board)) => Ok(checks::silicone(mold, board)?),
         _ => Ok(vec![]),
     }
 }
