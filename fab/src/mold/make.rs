@@ -75,7 +75,7 @@ pub fn blank(ready: &Ready, spec: &MoldSpec, plan: Plan, draft: f64) -> Mold {
         Plane { height, wrong: 0.0 } => Parting::Plane { height_mm: height },
         Plane { height, wrong } => Parting::Stepped { height_mm: height, off_mm2: wrong },
     };
-    Mold {
+    let mut mold = Mold {
         name: spec.name.clone(),
         route: spec.route,
         pull: ready.pull.clone(),
@@ -94,7 +94,13 @@ pub fn blank(ready: &Ready, spec: &MoldSpec, plan: Plan, draft: f64) -> Mold {
         figures: spec.figures.clone(),
         plan,
         tops: ready.tops.clone(),
+    };
+    if let Some(what) = &ready.mended {
+        let found =
+            finding(&mold, Severity::Note, vec![], what.clone(), "nothing to do; the volume stayed the same");
+        mold.findings.push(found);
     }
+    mold
 }
 
 /// A finding with its place in the part's own frame.

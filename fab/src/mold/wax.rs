@@ -90,7 +90,7 @@ const BETWEEN: f64 = 10.0;
 const NECK: f64 = 0.5;
 
 pub fn tree(part: &Mesh, at: &Section, count: usize, f: &Figures) -> Result<Tree, NotSolid> {
-    let (runner, gate) = (f.runner.value, at.thick * (f.feed_area.value / 100.0).sqrt());
+    let (runner, gate) = (f.runner.value, gate(part, at, f));
     // The way out at the gate turns to -x, toward the runner; the gate is the x axis.
     let turn = toward_runner(at.out);
     let lying = part.map(|v| turn * (v - at.at));
@@ -126,6 +126,13 @@ pub fn tree(part: &Mesh, at: &Section, count: usize, f: &Figures) -> Result<Tree
     let moduli = Moduli { pattern: part.volume() / part.area(), gate: gate / 4.0, runner: runner / 4.0 };
     let foot = solid.mesh().bounds().0.z;
     Ok(Tree { solid, gate, lying, reach, into, levels, radius, foot, top: top + runner, moduli })
+}
+
+/// The gate's diameter, mm: of the area asked for, and up to the most of its range where its modulus asks for more.
+fn gate(part: &Mesh, at: &Section, f: &Figures) -> f64 {
+    let of_area = |percent: f64| at.thick * (percent / 100.0).sqrt();
+    let feeding = 4.0 * f.modulus_step.value * part.volume() / part.area();
+    feeding.clamp(of_area(f.feed_area.value), of_area(f.feed_area.high.max(f.feed_area.value)))
 }
 
 /// A rotation that takes `out` to -x and keeps z as far up as it can be.

@@ -27,10 +27,9 @@ pub fn write(mold: &Mold, batch: &mut Batch) -> Result<MoldReport, MoldError> {
     batch.stage(&maps_name, |out| out.write_all(&maps))?;
     let mut report = report(mold, &back);
     report.files.push(maps_name);
-    report.measured.extend(measured(mold, &back)?);
-    let missed: Vec<Finding> =
-        report.measured.iter().filter(|m| !m.kept).map(|m| of_measure(mold, m)).collect();
-    report.findings.extend(missed);
+    let on_files = measured(mold, &back)?;
+    report.findings.extend(on_files.iter().filter(|m| !m.kept).map(|m| of_measure(mold, m)));
+    report.measured.extend(on_files);
     Ok(report)
 }
 
