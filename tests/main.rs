@@ -11,6 +11,7 @@ mod hands;
 mod known;
 mod laws;
 mod mesh;
+mod molds;
 mod pages;
 mod plan;
 mod random;
