@@ -80,6 +80,16 @@ impl Mesh {
         uses.into_iter().filter(|(_, n)| *n != (1, 1)).map(|(e, _)| e).collect()
     }
 
+    /// Whether every edge is used as often in one direction as in the other, and some more than once: sheets that touch
+    /// in an edge.
+    pub fn is_pinched(&self) -> bool {
+        let mut uses: BTreeMap<(u32, u32), i64> = BTreeMap::new();
+        let sides = |t: &[u32; 3]| [(t[0], t[1]), (t[1], t[2]), (t[2], t[0])];
+        self.triangles.iter().flat_map(sides).for_each(|e| *uses.entry(e).or_default() += 1);
+        let balanced = uses.iter().all(|((a, b), n)| uses.get(&(*b, *a)) == Some(n));
+        balanced && uses.values().any(|n| *n > 1)
+    }
+
     /// Bodies and genus of a closed mesh (V - E + F = 2 bodies - 2 genus, with E = 3F / 2).
     pub fn topology(&self) -> Topology {
         let mut root: Vec<usize> = (0..self.vertices.len()).collect();
