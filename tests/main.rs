@@ -3,6 +3,7 @@
 mod bad_input;
 mod certificates;
 mod cli;
+mod exact;
 mod fab;
 mod golden;
 mod hands;
