@@ -4,6 +4,7 @@ mod atlas;
 mod bad_input;
 mod certificates;
 mod cli;
+mod exact;
 mod fab;
 mod flex;
 mod golden;

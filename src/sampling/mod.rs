@@ -125,7 +125,7 @@ impl Ground<'_> {
 
     fn locked(&self, of: &Weighed, stress: &Stress) -> Standing {
         let speeds = margin::speeds(&of.rows, &of.unknowns);
-        let bound = margin::lock(&of.weighted(speeds.clone()), stress);
+        let bound = margin::lock(&of.weighted(speeds.clone()), stress, margin::PROGRAMS);
         let margin = Margin {
             norm: NORM.into(),
             lower: bound.as_ref().map(|b| b.lower).filter(|l| l.is_finite()),
@@ -156,7 +156,7 @@ impl Ground<'_> {
         let change: Vec<f64> =
             change.map(|((e, v), w)| e.angle * (v + e.distance * w) + e.distance * w).collect();
         let survives = change.iter().all(|c| c.is_finite())
-            && margin::lock(&of.weighted(change), stress).is_some_and(|b| b.lower > 1.0);
+            && margin::lock(&of.weighted(change), stress, 0).is_some_and(|b| b.lower > 1.0);
         if survives {
             return (Beyond::Holds, format!("the lock survives every change of the contacts within {what}"));
         }
