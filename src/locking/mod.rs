@@ -5,9 +5,12 @@
 //! undecided.
 
 mod decide;
-mod dense;
+mod interior;
+mod order;
+mod reduce;
 mod rows;
-mod solve;
+mod sparse;
+mod system;
 
 pub use decide::{Force, Gap, Motion, Stress, Twist, Verdict, decide};
 pub use rows::{Freedom, Row, Unknowns, rows};
