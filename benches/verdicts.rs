@@ -1,7 +1,8 @@
 //! Times the rigid verdict of named assemblies, and writes their rows for another solver (`against_highs.py`).
 //!
-//! `cargo bench --bench verdicts -- FOLDER NAME...`; a name is `roof`, `bunny`, `window-N`, `tiles-N` (doubled plain
-//! tiles) or `unit-ABC-N`, with N strands of wefts and N of warps. Prints one JSON object a line.
+//! `cargo bench --bench verdicts -- FOLDER NAME...`; a name is `window-N`, `tiles-N` (doubled plain tiles) or
+//! `unit-ABC-N`, with N wefts and N warps, `roof` or `bunny` (other people's assemblies, where they are), or a spec
+//! file. Prints one JSON object a line.
 
 use std::io::{BufWriter, Write};
 use std::path::Path;
@@ -42,12 +43,29 @@ fn spec(name: &str) -> Fallible<Spec> {
             let abc: Vec<String> = abc.chars().map(String::from).collect();
             woven(&abc.join(","), n, "cut = \"tiles\"\nrepeat = 1\nphase = 0\n")
         }
+        ["roof"] => meshes("roof", &["Boundary"]),
+        ["bunny"] => meshes("bunny", &["part_1", "part_2"]),
         _ => {
             let file = Path::new(name);
             let text = std::fs::read_to_string(file)?;
             Ok(parse(&text, file, Syntax::of(file, &text))?)
         }
     }
+}
+
+/// All OBJ files of a case, some held.
+fn meshes(case: &str, held: &[&str]) -> Fallible<Spec> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/cases/topolite").join(case);
+    let mut files: Vec<_> =
+        std::fs::read_dir(&folder)?.map(|e| Ok(e?.path())).collect::<std::io::Result<_>>()?;
+    files.retain(|f| f.extension().is_some_and(|e| e == "obj"));
+    files.sort();
+    let mut text = format!("name = \"{case}\"\n[contact]\ntolerance = \"0.001 mm\"\n[size]\nunit = \"mm\"\n");
+    for file in files {
+        let stem = file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+        text += &format!("[[part]]\nmesh = \"{stem}.obj\"\nheld = {}\n", held.contains(&stem.as_str()));
+    }
+    Ok(parse(&text, &folder.join("bench.toml"), Syntax::Toml)?)
 }
 
 fn timed(folder: &Path, name: &str) -> Fallible<String> {
@@ -99,4 +117,3 @@ fn write_rows(file: &Path, rows: &[Row], unknowns: &Unknowns) -> Fallible<()> {
     }
     Ok(out.flush()?)
 }
-

@@ -3,13 +3,13 @@
 //! Works on few rows at a time: forces on some rows that balance, with full rank, prove the lock for all; a motion is
 //! tested on all rows and the rows that it breaks join. Sound up to [`ROUND_OFF`]; not complete (undecided).
 
-use super::interior::{Found, keeps, polished, search};
+use super::interior::{Found, Rank, rank, search};
 use super::reduce::{kept, pair, turned};
 use super::rows::{Freedom, Row, Unknowns};
-use super::sparse::Shift;
-use super::system::{Nodes, System};
+use super::system::System;
 use crate::assembly::PartIx;
 use glam::DVec3;
+use rayon::prelude::*;
 use std::collections::BTreeMap;
 
 /// What the sum of up to a hundred thousand products of numbers of size 1 is off at most, with room for the solves
@@ -102,19 +102,14 @@ impl<const W: usize> Question<'_, W> {
             return Verdict::Locked(Stress { forces: Vec::new(), rank: 0, residual: 0.0, pivot_ratio: 1.0 });
         }
         let mut chosen = kept(self.rows, self.unknowns);
+        if let Some(motion) = self.alone(&chosen) {
+            return Verdict::Free(motion);
+        }
         loop {
-            let some: Vec<Row> = chosen.iter().map(|&k| turned(&self.rows[k])).collect();
-            let system = System::<W>::new(&some, self.unknowns);
-            let x = match search(&system) {
-                Found::Stress(y) => match self.lock(&system, &chosen, &y) {
-                    Lock::Proven(stress) => return Verdict::Locked(stress),
-                    Lock::Slides(x) => x,
-                    Lock::Neither(gap) => return Verdict::Undecided(gap),
-                },
-                Found::Motion(x) => x,
-                Found::Neither(gap) => return Verdict::Undecided(gap),
+            let x = match self.of_chosen(&chosen) {
+                Answer::Moves(x) => x,
+                Answer::Is(verdict) => return verdict,
             };
-            let x: Vec<f64> = x.into_iter().flatten().collect();
             if let Some(motion) = self.motion(&x) {
                 return Verdict::Free(motion);
             }
@@ -128,31 +123,50 @@ impl<const W: usize> Question<'_, W> {
         }
     }
 
-    /// Forces in balance prove a lock if the rows have full rank; if not, something slides.
-    fn lock(&self, system: &System<W>, chosen: &[usize], y: &[f64]) -> Lock<W> {
-        let ones = vec![1.0; system.rows()];
-        if system.factor(&ones, Shift::Proving).pinned.is_empty() {
-            let pivot_ratio = system.factor(&ones, Shift::None).pivot_ratio;
-            return self.stress(chosen, y, pivot_ratio);
-        }
-        let factor = system.factor(&ones, Shift::None);
-        let unit = |&(node, c): &(usize, usize)| {
-            let mut x = vec![[0.0; W]; system.nodes()];
-            x[node][c] = 1.0;
-            x
+    fn of_chosen(&self, chosen: &[usize]) -> Answer {
+        let some: Vec<Row> = chosen.iter().map(|&k| turned(&self.rows[k])).collect();
+        let node = |p: PartIx| self.unknowns.column[p.at()].map(|c| c / W);
+        let system = System::<W>::new(&some, self.unknowns, self.unknowns.count / W, node);
+        let x = match search(&system) {
+            Found::Stress(y) => match rank(&system) {
+                Rank::Full(pivot_ratio) => return Answer::Is(self.lock(chosen, &y, pivot_ratio)),
+                Rank::Lacks(x) => x,
+                Rank::Unknown(gap) => return Answer::Is(Verdict::Undecided(gap)),
+            },
+            Found::Motion(x) => x,
+            Found::Neither(gap) => return Answer::Is(Verdict::Undecided(gap)),
         };
-        let slide = |at| keeps(system, polished(system, &ones, &unit(at))?);
-        match factor.pinned.iter().take(MOST_SLIDES).find_map(slide) {
-            Some(x) => Lock::Slides(x),
-            None => Lock::Neither(Gap {
-                why: "the rank of the rows can not be told from round-off".into(),
-                size: factor.pivot_ratio,
-            }),
+        Answer::Moves(x.into_iter().flatten().collect())
+    }
+
+    /// The motion of the first part that can start to move while all others stand still: most free assemblies have
+    /// one, and its few unknowns cost nothing beside those of all parts together.
+    fn alone(&self, chosen: &[usize]) -> Option<Motion> {
+        let mut own: Vec<Vec<usize>> = vec![Vec::new(); self.unknowns.column.len()];
+        for &k in chosen {
+            own[self.rows[k].a.at()].push(k);
+            own[self.rows[k].b.at()].push(k);
         }
+        own.par_iter().enumerate().find_map_first(|(part, own)| {
+            let column = self.unknowns.column[part]?;
+            let some: Vec<Row> = own.iter().map(|&k| turned(&self.rows[k])).collect();
+            let system = System::<W>::new(&some, self.unknowns, 1, |p| (p.at() == part).then_some(0));
+            let moved = match search(&system) {
+                Found::Motion(x) => x,
+                Found::Stress(_) => match rank(&system) {
+                    Rank::Lacks(x) => x,
+                    Rank::Full(_) | Rank::Unknown(_) => return None,
+                },
+                Found::Neither(_) => return None,
+            };
+            let mut x = vec![0.0; self.unknowns.count];
+            x[column..column + W].copy_from_slice(&moved[0]);
+            self.motion(&x)
+        })
     }
 
     /// The forces scaled to at least 1, in the order of the rows, if they balance by the unknowns' own entries too.
-    fn stress(&self, chosen: &[usize], y: &[f64], pivot_ratio: f64) -> Lock<W> {
+    fn lock(&self, chosen: &[usize], y: &[f64], pivot_ratio: f64) -> Verdict {
         let least = y.iter().copied().fold(f64::INFINITY, f64::min);
         let force = |(&k, f): (&usize, &f64)| (k, Force { row: self.rows[k], size: (f / least).max(1.0) });
         let mut forces: Vec<(usize, Force)> = chosen.iter().zip(y).map(force).collect();
@@ -161,10 +175,9 @@ impl<const W: usize> Question<'_, W> {
         let residual = self.sum(&forces);
         let top = forces.iter().map(|f| f.size).fold(0.0, f64::max);
         if residual.is_nan() || residual > ROUND_OFF * top {
-            let why = "the forces do not balance to round-off".into();
-            return Lock::Neither(Gap { why, size: residual });
+            return undecided("the forces do not balance to round-off", residual);
         }
-        Lock::Proven(Stress { forces, rank: self.unknowns.count, residual, pivot_ratio })
+        Verdict::Locked(Stress { forces, rank: self.unknowns.count, residual, pivot_ratio })
     }
 
     /// The largest component of the forces' sum.
@@ -201,26 +214,24 @@ impl<const W: usize> Question<'_, W> {
     }
 }
 
-/// Null directions tried for one that every row allows: the first is one unless the rank itself is in doubt.
-const MOST_SLIDES: usize = 8;
-
-enum Lock<const W: usize> {
-    Proven(Stress),
-    /// The rows lack rank: a motion along which all of them stay still.
-    Slides(Nodes<W>),
-    Neither(Gap),
+/// What some of the rows say: a motion that they allow, or the verdict.
+enum Answer {
+    Moves(Vec<f64>),
+    Is(Verdict),
 }
 
 fn twists(unknowns: &Unknowns, x: &[f64]) -> Vec<(PartIx, Twist)> {
     let of = |(part, column): (usize, &Option<usize>)| {
         let c = (*column)?;
-        let translation = DVec3::from_slice(&x[c..]);
+        let own = &x[c..c + unknowns.freedom.unknowns()];
+        let translation = DVec3::from_slice(own);
         let rotation = match unknowns.freedom {
             Freedom::Translation => DVec3::ZERO,
-            Freedom::Rigid => DVec3::from_slice(&x[c + 3..]) / unknowns.lever[part],
+            Freedom::Rigid => DVec3::from_slice(&own[3..]) / unknowns.lever[part],
         };
         let centre = unknowns.centre[part];
-        Some((PartIx(part as u32), Twist { translation, rotation, centre }))
+        let moves = own.iter().any(|v| *v != 0.0);
+        moves.then_some((PartIx(part as u32), Twist { translation, rotation, centre }))
     };
     unknowns.column.iter().enumerate().filter_map(of).collect()
 }

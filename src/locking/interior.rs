@@ -5,7 +5,7 @@
 //! what comes back is judged by the caller. Not complete: numbers near a boundary give neither.
 
 use super::decide::{Gap, ROUND_OFF};
-use super::sparse::{Factor, Shift};
+use super::sparse::{Factor, Pins};
 use super::system::{Nodes, System};
 
 /// What was found for the rows of the system.
@@ -29,12 +29,42 @@ const LEFT_IN_BALANCE: f64 = 0.02;
 /// A step shorter than this moves nothing: the numbers carry no more.
 const STALLED: f64 = 1e-9;
 
+/// Whether rows that all carry force have full rank: then nothing moves, else something slides.
+pub enum Rank<const W: usize> {
+    /// With the smallest pivot of the scaled Gram matrix over its largest.
+    Full(f64),
+    /// A motion that moves no row, by more than round-off.
+    Lacks(Nodes<W>),
+    Unknown(Gap),
+}
+
+/// Null directions tried for one that every row allows: the first is one unless the rank itself is in doubt.
+const MOST_SLIDES: usize = 8;
+
+/// Proves full rank or finds a motion along which every row stays still.
+pub fn rank<const W: usize>(system: &System<W>) -> Rank<W> {
+    let ones = vec![1.0; system.rows()];
+    let proof = system.factor(&ones, Pins::Proof);
+    if proof.pinned.is_empty() {
+        return Rank::Full(proof.pivot_ratio);
+    }
+    let doubtful = system.factor(&ones, Pins::Doubtful(RANK_GUESSES[RANK_GUESSES.len() - 1])).pinned;
+    let slides: Vec<Nodes<W>> = doubtful.iter().take(MOST_SLIDES).map(|&at| unit(system, at)).collect();
+    let why = "the rank of the rows can not be told from round-off";
+    let unknown = || Rank::Unknown(Gap { why: why.into(), size: proof.pivot_ratio });
+    unmoved(system, &ones, &slides).map_or_else(unknown, Rank::Lacks)
+}
+
+fn unit<const W: usize>(system: &System<W>, (node, component): (usize, usize)) -> Nodes<W> {
+    let mut x = vec![[0.0; W]; system.nodes()];
+    x[node][component] = 1.0;
+    x
+}
+
 /// Looks for forces on all rows or a motion.
 pub fn search<const W: usize>(system: &System<W>) -> Found<W> {
     if system.rows() == 0 {
-        let mut x = vec![[0.0; W]; system.nodes()];
-        x[0][0] = 1.0;
-        return Found::Motion(x);
+        return Found::Motion(unit(system, (0, 0)));
     }
     let mut path = Path::new(system.rows());
     let mut tried = f64::INFINITY;
@@ -47,7 +77,10 @@ pub fn search<const W: usize>(system: &System<W>) -> Found<W> {
             break;
         }
     }
-    Found::Neither(Gap { why: "neither forces nor a motion come clear of round-off".into(), size: path.gap() })
+    Found::Neither(Gap {
+        why: "neither forces nor a motion come clear of round-off".into(),
+        size: path.gap(),
+    })
 }
 
 /// A point near the path: s = A x + theta, A^T y = theta A^T 1, s and y positive.
@@ -78,7 +111,7 @@ impl Path {
 
     fn aim<const W: usize>(&self, system: &System<W>) -> Aim<W> {
         let weights: Vec<f64> = self.y.iter().zip(&self.s).map(|(y, s)| y / s).collect();
-        let factor = system.factor(&weights, Shift::None);
+        let factor = system.factor(&weights, Pins::RoundOff);
         let x = factor.solve(&system.pattern, &system.sums(&self.y));
         let t: Vec<f64> = system.openings(&x).iter().zip(&self.s).map(|(o, s)| o / s).collect();
         let low = t.iter().copied().fold(f64::INFINITY, f64::min);
@@ -126,8 +159,7 @@ impl<const W: usize> Aim<W> {
         }
         *tried = unclear * UNCLEAR;
         let still: Vec<f64> = self.t.iter().map(|t| if *t < 0.5 { 1.0 } else { 0.0 }).collect();
-        let x = polished(system, &still, &self.x)?;
-        keeps(system, x).map(Found::Motion)
+        unmoved(system, &still, std::slice::from_ref(&self.x)).map(Found::Motion)
     }
 
     /// The forces y (1 - t), what round-off left of their sum taken away in proportion to the weights.
@@ -152,10 +184,27 @@ impl<const W: usize> Aim<W> {
 /// waits until all are clearer by as much again.
 const UNCLEAR: f64 = 0.1;
 
+/// The first of the motions that keeps every row once it is cleared of what moves the rows of weight 1. Their rank is
+/// a guess, so a few are tried; the rows decide.
+fn unmoved<const W: usize>(system: &System<W>, still: &[f64], motions: &[Nodes<W>]) -> Option<Nodes<W>> {
+    RANK_GUESSES.iter().find_map(|&times| {
+        let factor = system.factor(still, Pins::Doubtful(times));
+        motions.iter().find_map(|x| keeps(system, cleared(system, &factor, still, x)?))
+    })
+}
+
+/// A pivot counts if it stands this many times above what round-off alone can leave of a well conditioned matrix: how
+/// much more it leaves of this one is not known beforehand.
+const RANK_GUESSES: [f64; 3] = [1.0, 1e2, 1e4];
+
 /// The motion less its part that moves the rows of weight 1 (least squares), so that they stay still to round-off.
-pub fn polished<const W: usize>(system: &System<W>, still: &[f64], x: &Nodes<W>) -> Option<Nodes<W>> {
+fn cleared<const W: usize>(
+    system: &System<W>,
+    factor: &Factor<W>,
+    still: &[f64],
+    x: &Nodes<W>,
+) -> Option<Nodes<W>> {
     let before = largest(x);
-    let factor = system.factor(still, Shift::None);
     let mut x: Nodes<W> = x.iter().map(|v| v.map(|c| c / before)).collect();
     // The second and third round take away what the round-off of the one before left.
     for _ in 0..3 {
@@ -163,12 +212,12 @@ pub fn polished<const W: usize>(system: &System<W>, still: &[f64], x: &Nodes<W>)
         let by = factor.solve(&system.pattern, &system.sums(&moved));
         x.iter_mut().zip(by).for_each(|(v, d)| (0..W).for_each(|k| v[k] -= d[k]));
     }
-    // Less than a hundredth left: what was polished away was the motion itself.
+    // Less than a hundredth left: what was cleared away was the motion itself.
     (largest(&x) > 0.01).then_some(x)
 }
 
 /// The motion at size 1, if it keeps every row of the system.
-pub fn keeps<const W: usize>(system: &System<W>, x: Nodes<W>) -> Option<Nodes<W>> {
+fn keeps<const W: usize>(system: &System<W>, x: Nodes<W>) -> Option<Nodes<W>> {
     let size = largest(&x);
     let worst = system.openings(&x).into_iter().fold(0.0, f64::min);
     (size > 0.0 && worst >= -ROUND_OFF * size).then(|| x.iter().map(|v| v.map(|c| c / size)).collect())

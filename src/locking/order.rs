@@ -72,7 +72,8 @@ fn adjacency(nodes: usize, edges: &[(usize, usize)]) -> Vec<Vec<u32>> {
 
 /// The nodes in order, and the neighbours that each has when it goes.
 fn eliminate(mut adjacent: Vec<Vec<u32>>) -> (Vec<usize>, Vec<Vec<u32>>) {
-    let mut queue: BTreeSet<(usize, usize)> = adjacent.iter().enumerate().map(|(v, n)| (n.len(), v)).collect();
+    let mut queue: BTreeSet<(usize, usize)> =
+        adjacent.iter().enumerate().map(|(v, n)| (n.len(), v)).collect();
     let (mut order, mut columns) = (Vec::new(), Vec::new());
     while let Some((_, v)) = queue.pop_first() {
         let gone = std::mem::take(&mut adjacent[v]);

@@ -5,7 +5,8 @@
 //! and a motion is tested on every row. Not promised: that no row too many is kept.
 
 use super::rows::{Row, Unknowns};
-use glam::{DVec2, DVec3};
+use glam::DVec2;
+use rayon::prelude::*;
 use robust::{Coord, orient2d};
 
 /// Normals within this of each other are taken for one: round-off of a unit vector computed from coordinates of size
@@ -19,14 +20,10 @@ type Key = ((u32, u32), [i64; 3], usize);
 /// rows with one normal the corners of their outline span the cone, whichever planes they lie in.
 pub fn kept(rows: &[Row], unknowns: &Unknowns) -> Vec<usize> {
     let free = |r: &Row| unknowns.column[r.a.at()].is_some() || unknowns.column[r.b.at()].is_some();
-    let mut keys: Vec<Key> = rows.iter().enumerate().filter(|(_, r)| free(r)).map(|(k, r)| key(k, r)).collect();
-    keys.sort_unstable();
-    let mut kept = Vec::new();
-    for group in keys.chunk_by(|k, l| (k.0, k.1) == (l.0, l.1)) {
-        let members: Vec<usize> = group.iter().map(|k| k.2).collect();
-        outline(rows, &members, &mut kept);
-    }
-    kept
+    let mut keys: Vec<Key> =
+        rows.par_iter().enumerate().filter(|(_, r)| free(r)).map(|(k, r)| key(k, r)).collect();
+    keys.par_sort_unstable();
+    keys.par_chunk_by(|k, l| (k.0, k.1) == (l.0, l.1)).flat_map_iter(|group| outline(rows, group)).collect()
 }
 
 fn key(k: usize, row: &Row) -> Key {
@@ -45,12 +42,11 @@ pub fn turned(row: &Row) -> Row {
 }
 
 /// The corners of the convex outline of rows with one normal, seen along it.
-fn outline(rows: &[Row], members: &[usize], kept: &mut Vec<usize>) {
-    let Some(&first) = members.first() else { return };
-    let origin = rows[first].point;
-    let (u, v) = across(rows[first].normal);
+fn outline(rows: &[Row], group: &[Key]) -> Vec<usize> {
+    let first = &rows[group[0].2];
+    let (origin, (u, v)) = (first.point, first.normal.normalize().any_orthonormal_pair());
     let flat = |k: usize| DVec2::new((rows[k].point - origin).dot(u), (rows[k].point - origin).dot(v));
-    let mut points: Vec<(DVec2, usize)> = members.iter().map(|&k| (flat(k), k)).collect();
+    let mut points: Vec<(DVec2, usize)> = group.iter().map(|&(_, _, k)| (flat(k), k)).collect();
     points.sort_by(|(p, i), (q, j)| p.x.total_cmp(&q.x).then(p.y.total_cmp(&q.y)).then(i.cmp(j)));
     points.dedup_by(|p, q| p.0 == q.0);
     let mut hull: Vec<(DVec2, usize)> = Vec::new();
@@ -64,12 +60,7 @@ fn outline(rows: &[Row], members: &[usize], kept: &mut Vec<usize>) {
     if lower == 0 {
         hull = points;
     }
-    kept.extend(hull.into_iter().map(|(_, k)| k));
-}
-
-/// Two unit vectors across a normal; the same for the same normal either way round.
-fn across(normal: DVec3) -> (DVec3, DVec3) {
-    normal.normalize().any_orthonormal_pair()
+    hull.into_iter().map(|(_, k)| k).collect()
 }
 
 /// The strictly convex chain over points in order.

@@ -91,7 +91,11 @@ impl Unknowns {
     pub fn entries(&self, row: &Row) -> impl Iterator<Item = (usize, f64)> + use<> {
         let sides = [(row.a, -1.0), (row.b, 1.0)].map(|(part, sign)| {
             let arm = row.point - self.centre[part.at()];
-            (self.column[part.at()], row.normal * sign, arm.cross(row.normal) * (sign / self.lever[part.at()]))
+            (
+                self.column[part.at()],
+                row.normal * sign,
+                arm.cross(row.normal) * (sign / self.lever[part.at()]),
+            )
         });
         let width = self.freedom.unknowns();
         sides

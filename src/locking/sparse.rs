@@ -1,7 +1,7 @@
 //! Takes a symmetric positive semidefinite matrix of W x W blocks; gives its Cholesky factor on the block pattern.
 //!
 //! The matrix is scaled to a unit diagonal first. No pivoting: columns whose pivot is within round-off are left out
-//! (pinned), which finds null directions but does not prove their number; [`Shifted`] proves full rank.
+//! (pinned), which finds null directions but does not prove their number; [`Pins::Proof`] proves full rank.
 
 use super::order::Pattern;
 
@@ -12,14 +12,18 @@ pub const fn zero<const W: usize>() -> Block<W> {
     [[0.0; W]; W]
 }
 
-/// What is taken off the scaled diagonal before factoring.
+/// Which columns of the scaled matrix are left out.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Shift {
-    None,
-    /// Enough that a factor without pinned columns proves the matrix positive definite: the factor of a matrix with
-    /// unit diagonal is off by at most `terms` units of round-off in each entry (Higham 2002, theorem 10.3; the
-    /// products add to at most 1), so by that times the entries of a row in norm (Rump 2006).
-    Proving,
+pub enum Pins {
+    /// Those whose pivot is within the round-off of the sums that make it.
+    RoundOff,
+    /// Those whose pivot is within so many times the bound of [`Pins::Proof`].
+    Doubtful(f64),
+    /// As `RoundOff`, of the matrix less a bound on the norm of all round-off: if none is left out the matrix is proven
+    /// positive definite. The factor of a matrix with unit diagonal is off by at most as many units of round-off in
+    /// each entry as products are added there (Higham 2002, theorem 10.3), the norm by that times a row's entries
+    /// (Rump 2006).
+    Proof,
 }
 
 /// S G S = L L^T on the columns that are not pinned, S diagonal.
@@ -40,12 +44,14 @@ fn pivot_round_off(terms: usize) -> f64 {
 
 impl<const W: usize> Factor<W> {
     /// `blocks` are laid out as the pattern's; `summed` is how many products were added in an entry of them at most.
-    pub fn new(pattern: &Pattern, mut blocks: Vec<Block<W>>, summed: usize, shift: Shift) -> Factor<W> {
+    pub fn new(pattern: &Pattern, mut blocks: Vec<Block<W>>, summed: usize, pins: Pins) -> Factor<W> {
         let scale = scale(pattern, &mut blocks);
-        let least = pivot_round_off(pattern.most_terms(W) + summed);
-        let off = match shift {
-            Shift::None => 0.0,
-            Shift::Proving => least * pattern.most_entries(W) as f64,
+        let round_off = pivot_round_off(pattern.most_terms(W) + summed);
+        let bound = round_off * pattern.most_entries(W) as f64;
+        let (least, off) = match pins {
+            Pins::RoundOff => (round_off, 0.0),
+            Pins::Doubtful(times) => (bound * times, 0.0),
+            Pins::Proof => (round_off, bound),
         };
         let mut pivots = Pivots { least, smallest: f64::INFINITY, largest: 0.0, pinned: Vec::new() };
         let mut at = vec![0; pattern.place.len()];
@@ -114,14 +120,23 @@ fn scale<const W: usize>(pattern: &Pattern, blocks: &mut [Block<W>]) -> Vec<[f64
     for (column, s) in by.iter().enumerate() {
         for at in pattern.start[column]..pattern.start[column + 1] {
             let r = by[pattern.row[at]];
-            blocks[at].iter_mut().zip(r).for_each(|(line, r)| line.iter_mut().zip(s).for_each(|(v, s)| *v *= r * s));
+            blocks[at]
+                .iter_mut()
+                .zip(r)
+                .for_each(|(line, r)| line.iter_mut().zip(s).for_each(|(v, s)| *v *= r * s));
         }
     }
     pattern.place.iter().map(|&k| by[k]).collect()
 }
 
 /// Takes off a column what the columns before it leave there.
-fn gather<const W: usize>(p: &Pattern, column: usize, done: &[Block<W>], own: &mut [Block<W>], at: &mut [usize]) {
+fn gather<const W: usize>(
+    p: &Pattern,
+    column: usize,
+    done: &[Block<W>],
+    own: &mut [Block<W>],
+    at: &mut [usize],
+) {
     for (k, &row) in p.row[p.start[column]..p.start[column + 1]].iter().enumerate() {
         at[row] = k;
     }

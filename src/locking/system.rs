@@ -5,7 +5,8 @@
 
 use super::order::Pattern;
 use super::rows::{Freedom, Row, Unknowns};
-use super::sparse::{Block, Factor, Shift, dot, transposed, zero};
+use super::sparse::{Block, Factor, Pins, dot, transposed, zero};
+use crate::assembly::PartIx;
 use glam::DVec3;
 use rayon::prelude::*;
 use std::ops::Range;
@@ -30,8 +31,14 @@ pub struct System<const W: usize> {
 pub type Nodes<const W: usize> = Vec<[f64; W]>;
 
 impl<const W: usize> System<W> {
-    /// Rows of one pair must stand together, all the same way round. W is the freedom's number of unknowns.
-    pub fn new(rows: &[Row], unknowns: &Unknowns) -> System<W> {
+    /// Rows of one pair must stand together, all the same way round. W is the freedom's number of unknowns; `node` says
+    /// which of the `nodes` a part is, if any.
+    pub fn new(
+        rows: &[Row],
+        unknowns: &Unknowns,
+        nodes: usize,
+        node: impl Fn(PartIx) -> Option<usize>,
+    ) -> System<W> {
         let mut pairs = Vec::new();
         let mut wrenches = Vec::with_capacity(rows.len());
         for chunk in rows.chunk_by(|r, s| (r.a, r.b) == (s.a, s.b)) {
@@ -39,19 +46,23 @@ impl<const W: usize> System<W> {
             let far = chunk.iter().map(|r| (r.point - middle).length()).fold(0.0, f64::max);
             let lever = if far > 0.0 { far } else { 1.0 };
             let first = wrenches.len();
-            wrenches.extend(chunk.iter().map(|r| wrench(r.normal, (r.point - middle).cross(r.normal) / lever)));
-            let side = |part: crate::assembly::PartIx, sign| {
-                let node = unknowns.column[part.at()]? / W;
+            wrenches
+                .extend(chunk.iter().map(|r| wrench(r.normal, (r.point - middle).cross(r.normal) / lever)));
+            let side = |part: PartIx, sign| {
+                let node = node(part)?;
                 let arm = middle - unknowns.centre[part.at()];
                 Some((node, frame(unknowns.freedom, arm, lever, unknowns.lever[part.at()]), sign))
             };
             let sides = [side(chunk[0].a, -1.0), side(chunk[0].b, 1.0)].into_iter().flatten().collect();
             pairs.push(Pair { sides, rows: first..wrenches.len() });
         }
-        let edges: Vec<(usize, usize)> =
-            pairs.iter().filter(|p: &&Pair<W>| p.sides.len() == 2).map(|p| (p.sides[0].0, p.sides[1].0)).collect();
-        let pattern = Pattern::new(unknowns.count / W, &edges);
-        let mut on = vec![0; unknowns.count / W];
+        let edges: Vec<(usize, usize)> = pairs
+            .iter()
+            .filter(|p: &&Pair<W>| p.sides.len() == 2)
+            .map(|p| (p.sides[0].0, p.sides[1].0))
+            .collect();
+        let pattern = Pattern::new(nodes, &edges);
+        let mut on = vec![0; nodes];
         pairs.iter().for_each(|p| p.sides.iter().for_each(|s| on[s.0] += p.rows.len()));
         System { pattern, pairs, wrenches, crowd: on.into_iter().max().unwrap_or(0) }
     }
@@ -100,7 +111,7 @@ impl<const W: usize> System<W> {
     }
 
     /// The factor of A^T D A for weights D, one for each row.
-    pub fn factor(&self, weights: &[f64], shift: Shift) -> Factor<W> {
+    pub fn factor(&self, weights: &[f64], pins: Pins) -> Factor<W> {
         let grams: Vec<Block<W>> = self.pairs.par_iter().map(|p| self.gram(p, weights)).collect();
         let mut blocks = vec![zero::<W>(); self.pattern.row.len()];
         for (pair, gram) in self.pairs.iter().zip(&grams) {
@@ -116,7 +127,7 @@ impl<const W: usize> System<W> {
                 }
             }
         }
-        Factor::new(&self.pattern, blocks, self.crowd + 2 * W, shift)
+        Factor::new(&self.pattern, blocks, self.crowd + 2 * W, pins)
     }
 
     fn gram(&self, pair: &Pair<W>, weights: &[f64]) -> Block<W> {
