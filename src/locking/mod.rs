@@ -5,7 +5,9 @@
 //! undecided.
 
 mod decide;
+mod factor;
 mod interior;
+pub mod margin;
 mod order;
 mod reduce;
 mod rows;

@@ -4,16 +4,19 @@
 //! accidental change. Not promised: that a checksum stops a forger; `verify` re-does the mathematics.
 
 mod flex;
-mod repeats;
+pub mod repeats;
+mod sampling;
 mod weave;
 
-pub use flex::{CoreAnswer, FlexAnswer, flex};
-pub use repeats::{RepeatsAnswer, RepeatsRow, repeats};
+pub use flex::{CoreAnswer, FlexAnswer, OrbitAnswer, SymmetryOfParts, flex};
+pub use repeats::RepeatsAnswer;
+pub use sampling::{check_of, refined};
 pub use weave::{WeaveAnswer, weave};
 
 use crate::assembly::{Assembly, PartIx};
 use crate::contact::Joined;
 use crate::locking::{Check, Motion, Stress, Twist, Verdict};
+use crate::sampling::{Refined, Sampling, standing};
 use crate::sequence::Plan;
 use glam::DVec3;
 use schemars::JsonSchema;
@@ -123,6 +126,12 @@ pub struct CheckAnswer {
     pub held: Vec<String>,
     /// The part taken as fixed where none is held; the verdict does not depend on which.
     pub fixed: Option<String>,
+    /// Margins, and whether the verdicts hold beyond the samples.
+    #[serde(flatten)]
+    pub sampling: Sampling,
+    /// The check repeated with more samples, where that was asked for.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub refine: Option<Refined>,
     pub remarks: Vec<String>,
     pub source: Source,
     pub checksum: String,
@@ -150,6 +159,8 @@ pub struct PlanAnswer {
 pub enum Sealed {
     Check(Box<CheckAnswer>),
     Plan(Box<PlanAnswer>),
+    Flex(Box<FlexAnswer>),
+    Repeats(Box<RepeatsAnswer>),
 }
 
 pub fn ids(assembly: &Assembly, parts: &[PartIx]) -> Vec<String> {
@@ -171,6 +182,8 @@ pub fn check(joined: &Joined, check: &Check, source: Source) -> CheckAnswer {
         rows: check.rows,
         held: ids(assembly, &check.held),
         fixed: check.fixed.map(|p| assembly.part(p).id.clone()),
+        sampling: standing(joined, check),
+        refine: None,
         remarks: joined.remarks.clone(),
         source,
         checksum: String::new(),

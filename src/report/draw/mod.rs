@@ -18,6 +18,8 @@ pub mod mesh;
 mod paint;
 pub mod palette;
 pub mod scene;
+pub mod sheet;
+mod strokes;
 
 pub use camera::{Projection, View};
 pub use image::{Image, Size, beside, write_png};
