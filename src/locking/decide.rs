@@ -4,13 +4,13 @@
 //! tested on all rows and the rows that it breaks join. Sound up to [`ROUND_OFF`]; not complete (undecided).
 
 use super::interior::{Found, Rank, rank, search};
-use super::reduce::{kept, pair, turned};
+use super::reduce::{kept, outermost, pair, turned};
 use super::rows::{Freedom, Row, Unknowns};
 use super::system::System;
 use crate::assembly::PartIx;
 use glam::DVec3;
 use rayon::prelude::*;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// What the sum of up to a hundred thousand products of numbers of size 1 is off at most, with room for the solves
 /// that lead there: 1e5 units of round-off are 2.2e-11.
@@ -101,10 +101,11 @@ impl<const W: usize> Question<'_, W> {
         if self.unknowns.count == 0 {
             return Verdict::Locked(Stress { forces: Vec::new(), rank: 0, residual: 0.0, pivot_ratio: 1.0 });
         }
-        let mut chosen = kept(self.rows, self.unknowns);
-        if let Some(motion) = self.alone(&chosen) {
+        let mut kept = kept(self.rows, self.unknowns);
+        if let Some(motion) = self.alone(&kept) {
             return Verdict::Free(motion);
         }
+        let mut chosen = outermost(self.rows, &kept, self.unknowns.freedom);
         loop {
             let x = match self.of_chosen(&chosen) {
                 Answer::Moves(x) => x,
@@ -113,8 +114,11 @@ impl<const W: usize> Question<'_, W> {
             if let Some(motion) = self.motion(&x) {
                 return Verdict::Free(motion);
             }
-            let more = self.broken(&x);
-            if more.iter().all(|k| chosen.contains(k)) {
+            let before: BTreeSet<usize> = chosen.iter().copied().collect();
+            // What few rows do not lock is asked with all that are worth it; then only what is left out by round-off joins.
+            let mut more = self.broken(&x);
+            more.append(&mut kept);
+            if more.iter().all(|k| before.contains(k)) {
                 return undecided("a motion breaks no row by more than round-off, yet not none", ROUND_OFF);
             }
             chosen.extend(more);

@@ -49,7 +49,8 @@ pub fn speeds(rows: &[Row], unknowns: &Unknowns) -> Vec<f64> {
             if unknowns.column[part.at()].is_none() {
                 return DVec3::ZERO;
             }
-            let arm = (row.point - unknowns.centre[part.at()]).abs() * (turns(unknowns) / unknowns.lever[part.at()]);
+            let arm = (row.point - unknowns.centre[part.at()]).abs()
+                * (turns(unknowns) / unknowns.lever[part.at()]);
             DVec3::new(1.0 + arm.y + arm.z, 1.0 + arm.z + arm.x, 1.0 + arm.x + arm.y)
         };
         (side(row.a) + side(row.b)).length() * (1.0 + 16.0 * UNIT)
@@ -59,9 +60,8 @@ pub fn speeds(rows: &[Row], unknowns: &Unknowns) -> Vec<f64> {
 
 /// Bounds of the relative rate of turning at each row over the unit box, radians for each unit of translation.
 pub fn turnings(rows: &[Row], unknowns: &Unknowns) -> Vec<f64> {
-    let side = |part: PartIx| {
-        f64::from(u8::from(unknowns.column[part.at()].is_some())) / unknowns.lever[part.at()]
-    };
+    let side =
+        |part: PartIx| f64::from(u8::from(unknowns.column[part.at()].is_some())) / unknowns.lever[part.at()];
     let root_3 = 3.0_f64.sqrt() * (1.0 + 4.0 * UNIT);
     let one = |row: &Row| (side(row.a) + side(row.b)) * root_3 * turns(unknowns);
     rows.iter().map(one).collect()

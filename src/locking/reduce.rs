@@ -4,10 +4,11 @@
 //! same motions are allowed and the rank is the same. Nothing rests on that round-off: forces act on rows that exist,
 //! and a motion is tested on every row. Not promised: that no row too many is kept.
 
-use super::rows::{Row, Unknowns};
-use glam::DVec2;
+use super::rows::{Freedom, Row, Unknowns};
+use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 use robust::{Coord, orient2d};
+use std::collections::BTreeSet;
 
 /// Normals within this of each other are taken for one: round-off of a unit vector computed from coordinates of size
 /// 1 at a resolution of 2^-40 of them.
@@ -24,6 +25,41 @@ pub fn kept(rows: &[Row], unknowns: &Unknowns) -> Vec<usize> {
         rows.par_iter().enumerate().filter(|(_, r)| free(r)).map(|(k, r)| key(k, r)).collect();
     keys.par_sort_unstable();
     keys.par_chunk_by(|k, l| (k.0, k.1) == (l.0, l.1)).flat_map_iter(|group| outline(rows, group)).collect()
+}
+
+/// Of rows that stand pair by pair, those of each pair that lie farthest along the axes of force and moment and their
+/// diagonals: few, and mostly enough for a lock. Not all extreme rays of the pair's cone are among them.
+pub fn outermost(rows: &[Row], kept: &[usize], freedom: Freedom) -> Vec<usize> {
+    let along = probes(freedom);
+    kept.par_chunk_by(|&i, &j| pair(&rows[i]) == pair(&rows[j]))
+        .flat_map_iter(|own| farthest(rows, own, &along))
+        .collect()
+}
+
+fn farthest(rows: &[Row], own: &[usize], along: &[(DVec3, DVec3)]) -> BTreeSet<usize> {
+    let middle = own.iter().map(|&k| rows[k].point).sum::<DVec3>() / own.len() as f64;
+    let wrench = |&k: &usize| {
+        let row = turned(&rows[k]);
+        (k, row.normal, (row.point - middle).cross(row.normal))
+    };
+    let wrenches: Vec<(usize, DVec3, DVec3)> = own.iter().map(wrench).collect();
+    let best = |&(f, m): &(DVec3, DVec3)| {
+        let value = |w: &(usize, DVec3, DVec3)| f.dot(w.1) + m.dot(w.2);
+        let of_two = |i: &(usize, f64), j: &(usize, f64)| i.1.total_cmp(&j.1).then(j.0.cmp(&i.0));
+        wrenches.iter().map(|w| (w.0, value(w))).max_by(of_two).map(|w| w.0)
+    };
+    along.iter().filter_map(best).collect()
+}
+
+fn probes(freedom: Freedom) -> Vec<(DVec3, DVec3)> {
+    let sign = |k: i32| f64::from(k % 3 - 1);
+    let signs = (0..27).map(|k| DVec3::new(sign(k), sign(k / 3), sign(k / 9)));
+    let along: Vec<DVec3> = signs.filter(|d| *d != DVec3::ZERO).collect();
+    let forces = along.iter().map(|&d| (d, DVec3::ZERO));
+    match freedom {
+        Freedom::Translation => forces.collect(),
+        Freedom::Rigid => forces.chain(along.iter().map(|&d| (DVec3::ZERO, d))).collect(),
+    }
 }
 
 fn key(k: usize, row: &Row) -> Key {
