@@ -3,6 +3,7 @@
 //! Not promised: any finding of its own. No panic reaches a user: what slips through is reported as a fault of ours.
 
 pub mod args;
+mod blocking;
 mod load;
 mod make;
 mod questions;
@@ -44,6 +45,7 @@ fn dispatch(args: &Args) -> Result<Told, Trouble> {
         Some(Verb::Plan { file, of, clearance }) => {
             questions::plan(&load::spec(file)?.joined()?, of, clearance.unwrap_or(0.0))
         }
+        Some(Verb::Blocking(asked)) => blocking::blocking(&load::spec(&asked.file)?.joined()?, asked),
         Some(Verb::Flex { file }) => questions::flex(&load::spec(file)?.joined()?),
         Some(Verb::Repeats(asked)) => questions::repeats(asked),
         Some(Verb::Chirality { subject }) => questions::chirality(subject),

@@ -3,10 +3,14 @@
 //! Every answer carries the text of its spec, so that it can be checked without the file, and a checksum against
 //! accidental change. Not promised: that a checksum stops a forger; `verify` re-does the mathematics.
 
+mod blocking;
 mod flex;
 mod repeats;
 mod weave;
 
+pub use blocking::{
+    ArcAnswer, BlockingAnswer, CellAnswer, Connected, DbgAnswer, Found, NdbgAnswer, ReachWord, blocking, dbg,
+};
 pub use flex::{CoreAnswer, FlexAnswer, flex};
 pub use repeats::{RepeatsAnswer, RepeatsRow, repeats};
 pub use weave::{WeaveAnswer, weave};

@@ -18,6 +18,7 @@ pub mod mesh;
 mod paint;
 pub mod palette;
 pub mod scene;
+pub mod sphere;
 
 pub use camera::{Projection, View};
 pub use image::{Image, Size, beside, write_png};
