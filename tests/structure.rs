@@ -18,7 +18,7 @@ const FLOW: [&[&str]; 16] = [
     &["contact"],
     &["blocking", "locking"],
     &["sequence"],
-    &["repeats", "flex", "chirality", "fabricate"],
+    &["repeats", "flex", "chirality", "fabricate", "interlock"],
     &["report"],
     &["verify", "atlas"],
     &["cli"],

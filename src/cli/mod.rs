@@ -4,6 +4,7 @@
 
 pub mod args;
 mod blocking;
+mod interlock;
 mod load;
 mod make;
 mod questions;

@@ -3,6 +3,7 @@
 //! Not promised: anything beyond what the stage that answers promises.
 
 use super::args::{Common, Repeats};
+use super::interlock::told as told_interlock;
 use super::load::{self, Placed};
 use super::told::{News, Told, Trouble};
 use super::words;
@@ -16,6 +17,7 @@ use crate::contact::Joined;
 use crate::fault::Fault;
 use crate::flex as flexible;
 use crate::input;
+use crate::interlock;
 use crate::locking::{self, Check, Verdict};
 use crate::repeats::{self, Search};
 use crate::report::answer::{self, Certificate, FlexAnswer, PlanAnswer, RepeatsAnswer, Sealed};
@@ -37,9 +39,14 @@ pub fn check(placed: &Placed, fix: Option<&str>) -> Result<Told, Trouble> {
 }
 
 pub fn told_check(placed: &Placed, check: &Check) -> Told {
+    let asm = &placed.joined.assembly;
+    let found = interlock::interlock(asm, &placed.joined.patches, check);
+    let interlock = answer::interlock(asm, check, &found);
     let answer = answer::check(&placed.joined, check, placed.source.clone());
+    let answer = answer::with_interlock(answer, interlock);
     let news = News::of(matches!(check.rigid, Verdict::Locked(_)));
-    let chapter = chapters::verdict(&placed.joined.assembly, check);
+    let mut chapter = chapters::verdict(&placed.joined.assembly, check);
+    chapter.facts.extend(answer.interlock.iter().flat_map(told_interlock));
     Told {
         remarks: answer.remarks.clone(),
         ..Told::new(news, &answer, &answer.name, "Does it lock?", chapter)

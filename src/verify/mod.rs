@@ -5,6 +5,7 @@
 
 pub mod certificate;
 mod field;
+mod interlock;
 pub mod plan;
 
 use crate::assembly::{Assembly, PartIx};
@@ -73,7 +74,8 @@ fn check(joined: &Joined, a: &CheckAnswer) -> Result<(), String> {
     };
     certificate::proof(asm, &joined.patches, &a.rigid, &still, About::RigidMotions)?;
     certificate::proof(asm, &joined.patches, &a.translation_proof, &still, About::Translations)
-        .map_err(|why| format!("translations: {why}"))
+        .map_err(|why| format!("translations: {why}"))?;
+    interlock::claims(joined, a)
 }
 
 fn plan(joined: &Joined, a: &PlanAnswer) -> Result<(), String> {

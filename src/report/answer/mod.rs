@@ -5,6 +5,7 @@
 
 mod blocking;
 mod flex;
+mod interlock;
 mod repeats;
 mod weave;
 
@@ -12,6 +13,9 @@ pub use blocking::{
     ArcAnswer, BlockingAnswer, CellAnswer, Connected, DbgAnswer, Found, NdbgAnswer, ReachWord, blocking, dbg,
 };
 pub use flex::{CoreAnswer, FlexAnswer, flex};
+pub use interlock::{
+    DirectionsAnswer, InterlockAnswer, InterlockWord, KeyAnswer, LockedCore, SearchedAnswer, interlock,
+};
 pub use repeats::{RepeatsAnswer, RepeatsRow, repeats};
 pub use weave::{WeaveAnswer, weave};
 
@@ -127,6 +131,12 @@ pub struct CheckAnswer {
     pub held: Vec<String>,
     /// The part taken as fixed where none is held; the verdict does not depend on which.
     pub fixed: Option<String>,
+    /// Locked whichever one part is held.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub interlocked: Option<InterlockWord>,
+    /// Keys and cores.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub interlock: Option<InterlockAnswer>,
     pub remarks: Vec<String>,
     pub source: Source,
     pub checksum: String,
@@ -175,11 +185,20 @@ pub fn check(joined: &Joined, check: &Check, source: Source) -> CheckAnswer {
         rows: check.rows,
         held: ids(assembly, &check.held),
         fixed: check.fixed.map(|p| assembly.part(p).id.clone()),
+        interlocked: None,
+        interlock: None,
         remarks: joined.remarks.clone(),
         source,
         checksum: String::new(),
     };
     CheckAnswer { checksum: checksum(&answer), ..answer }
+}
+
+/// The answer with what was found about keys and cores.
+pub fn with_interlock(answer: CheckAnswer, interlock: InterlockAnswer) -> CheckAnswer {
+    let (interlocked, checksum) = (Some(interlock.word), String::new());
+    let answer = CheckAnswer { interlocked, interlock: Some(interlock), checksum, ..answer };
+    CheckAnswer { checksum: self::checksum(&answer), ..answer }
 }
 
 pub fn plan(
