@@ -392,3 +392,30 @@ fn programs_of_others_pass_the_plain_tiles() {
         }
     }
 }
+
+/// Every `[a,b,c]` up to n = 8 in several rises: either the promise is kept, or a finding says where and what to do.
+#[test]
+#[ignore = "minutes"]
+fn every_tile_of_the_atlas_range_is_made_or_told() {
+    for n in 2..=8_i32 {
+        for (a, c) in (1..n).flat_map(|a| (1..n).map(move |c| (a, c))) {
+            for rise in [0.0, 0.3, 0.6, 1.0] {
+                let start = std::time::Instant::now();
+                let swatch = format!("wefts = {n}\nwarps = {n}\ncut = \"tiles\"");
+                let job = woven(&format!("[{a},{},{c}]", n - a), &swatch, 6, rise);
+                for clearance in [0.2, 0.6, 1.5] {
+                    let report = made(&job, &recipe(clearance));
+                    let bad: Vec<_> =
+                        report.findings.iter().filter(|f| f.severity != Severity::Note).collect();
+                    let worst = report.worst();
+                    println!(
+                        "SWEEP [{a},{n},{c}] rise {rise} clearance {clearance}: {worst:?} {} {:?} {:.2}",
+                        bad.len(),
+                        bad.first().map(|f| (&f.what, &f.place.parts)),
+                        start.elapsed().as_secs_f64()
+                    );
+                }
+            }
+        }
+    }
+}

@@ -2,7 +2,7 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
-use weavelock::atlas::{self, Ask, Settings};
+
 use weavelock::chirality::answer::{Handedness, Hands, WarpIs};
 use weavelock::chirality::{of_assembly, of_weave};
 use weavelock::contact::join;
@@ -242,45 +242,4 @@ fn meshes_have_hands_and_a_cube_has_none() {
     assert!(matches!(pair, Handedness::Left | Handedness::Right), "{pair:?}");
     assert_eq!(meshes("cube", &[CUBE]), (vec![Handedness::Achiral], Handedness::Achiral));
     assert_eq!(meshes("cubes", &[CUBE, CUBE]).1, Handedness::Achiral);
-}
-
-fn small() -> Ask {
-    Ask { max_n: 4, most: 2, settings: Settings { samples: 4, ..Settings::default() } }
-}
-
-fn bytes(folder: &Path) -> [Vec<u8>; 2] {
-    ["atlas.jsonl", "atlas.csv"].map(|name| fs::read(folder.join(name)).expect("written"))
-}
-
-#[test]
-fn the_atlas_is_the_same_with_any_threads_and_after_a_stop() {
-    let [one, many, torn] = ["one", "many", "torn"].map(folder);
-    for (folder, threads) in [(&one, 1), (&many, 3)] {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
-        let written =
-            pool.install(|| atlas::write(&small(), folder, |_| ())).unwrap_or_else(|f| panic!("{f}"));
-        assert_eq!((written.found, written.rows.len()), (0, atlas::weaves(4).len()));
-    }
-    assert_eq!(bytes(&one), bytes(&many));
-    // Stopped in the middle of the third row.
-    let whole = bytes(&one)[0].clone();
-    let third = whole.iter().enumerate().filter(|b| *b.1 == b'\n').nth(1).expect("rows").0 + 20;
-    fs::write(torn.join("atlas.jsonl"), &whole[..third]).expect("written");
-    let written = atlas::write(&small(), &torn, |_| ()).unwrap_or_else(|f| panic!("{f}"));
-    assert_eq!(written.found, 2);
-    assert_eq!(bytes(&one), bytes(&torn));
-    // Another table is refused and left alone.
-    let other = Ask { most: 3, ..small() };
-    assert!(atlas::write(&other, &torn, |_| ()).is_err());
-    assert_eq!(bytes(&one), bytes(&torn));
-    for folder in [one, many, torn] {
-        fs::remove_dir_all(folder).expect("removed");
-    }
-}
-
-#[test]
-fn the_atlas_holds_the_known_answers() {
-    assert_eq!(atlas::weaves(4), [(1, 1, 1), (2, 1, 1), (2, 2, 1), (2, 2, 2), (3, 1, 1)]);
-    let least = |abc| atlas::row(abc, &Ask::new(8)).unwrap_or_else(|f| panic!("{f}")).minimal_repeat;
-    assert_eq!([(1, 1, 1), (2, 2, 1)].map(least), [Some(2), Some(2)]);
 }

@@ -32,7 +32,7 @@ pub(crate) fn check_all(report: &mut Report, pieces: &[Piece], programs: &Progra
 }
 
 fn high(piece: &Piece) -> DVec3 {
-    piece.made.as_ref().map_or(DVec3::ZERO, |m| m.mesh.bounds().1)
+    piece.made.as_ref().map_or(DVec3::ZERO, |_| piece.master.bounds().1)
 }
 
 fn volume(scad: &Scad, programs: &Programs, file: &Path, part: &PartReport, high: DVec3) -> Check {

@@ -2,6 +2,7 @@
 //!
 //! Not promised: that a file which fits the schema is free of faults; bounds that depend on other keys are not in it.
 
+use super::atlas::AtlasAnswer;
 use super::told::{News, Told, Trouble};
 use crate::chirality::answer::Hands;
 use crate::report::answer::{
@@ -23,6 +24,7 @@ pub fn schema() -> Result<Told, Trouble> {
         ("repeats", schema_for!(RepeatsAnswer)),
         ("weave", schema_for!(WeaveAnswer)),
         ("chirality", schema_for!(Hands)),
+        ("atlas", schema_for!(AtlasAnswer)),
         ("verify", schema_for!(Verified)),
     ]);
     let pretty = serde_json::to_string_pretty(&all).unwrap_or_default();

@@ -3,6 +3,8 @@
 //! Between woven tiles contacts are known by identity of sites; between meshes they are searched within the user's
 //! tolerance. Not promised: contacts of meshes that lie farther apart than the tolerance, or have no normal.
 
+pub mod chord;
+mod curve;
 pub mod mesh;
 pub mod woven;
 
@@ -51,9 +53,12 @@ pub fn join(spec: &Spec) -> Result<Joined, Faults> {
 }
 
 fn join_meshes(spec: &Spec, meshes: &MeshSpec) -> Result<Joined, Faults> {
-    let (assembly, mut remarks) = read::assembly(spec, meshes)?;
+    let read::Read { assembly, resolution, mut remarks } = read::assembly(spec, meshes)?;
     let tolerance = meshes.tolerance_mm / meshes.mm_per_unit;
-    let found = mesh::mesh_patches(&assembly, tolerance).map_err(|overlaps| {
+    let turns = meshes.parts.iter().map(|p| p.turn);
+    let accuracy: Vec<_> =
+        resolution.into_iter().zip(turns).map(|(corner, turn)| mesh::Accuracy { corner, turn }).collect();
+    let found = mesh::mesh_patches(&assembly, &accuracy, tolerance).map_err(|overlaps| {
         let fault = |o: &mesh::Overlap| {
             let hint =
                 "move the parts apart, or raise [contact] tolerance if the overlap is not meant to count";
@@ -67,5 +72,6 @@ fn join_meshes(spec: &Spec, meshes: &MeshSpec) -> Result<Joined, Faults> {
             found.assumed.len()
         ));
     }
+    remarks.extend(found.settled.words());
     Ok(Joined { assembly, patches: found.patches, origin: Origin::Meshes, remarks })
 }

@@ -6,6 +6,8 @@
 
 mod decide;
 mod dense;
+mod factor;
+pub mod margin;
 mod rows;
 mod solve;
 

@@ -7,6 +7,7 @@ use super::run::{run, version};
 use super::{Check, Outcome, check};
 use crate::files::stl;
 use crate::mesh::Mesh;
+use crate::solid::Solid;
 use glam::DVec3;
 use rayon::prelude::*;
 use std::fs;
@@ -99,14 +100,41 @@ impl OpenScad {
         Err(Outcome::Failed(format!("they share {volume:.6} mm3, at {place}")))
     }
 
+    /// Whether a source, with a variable set, makes the solid that is in a file: the same volume, and nothing that only
+    /// one of the two has, both to [`VOLUME_TOLERANCE`]. `expected`: volume in the file, mm3.
+    pub fn same(&self, source: &Path, define: &str, file: &Path, expected: f64) -> Check {
+        let verdict = self.run(source, &[define.to_string()]).and_then(|theirs| {
+            let off = (theirs.volume() - expected).abs() / expected;
+            if off > VOLUME_TOLERANCE {
+                return Err(Outcome::Failed(format!(
+                    "it makes {:.3} mm3, ours is {expected:.3}",
+                    theirs.volume()
+                )));
+            }
+            let apart = differs(&theirs, file).map_err(Outcome::Failed)?;
+            if apart <= VOLUME_TOLERANCE * expected {
+                return Ok(());
+            }
+            Err(Outcome::Failed(format!("{apart:.3} mm3 are in one of the two solids only")))
+        });
+        check(&self.name, "makes the same solid from the source", verdict)
+    }
+
     fn gate(&self, what: &str, at: DVec3) -> Result<Mesh, Outcome> {
+        self.run(
+            &self.folder.join("gate.scad"),
+            &[what.to_string(), format!("at=[{},{},{}]", at.x, at.y, at.z)],
+        )
+    }
+
+    fn run(&self, source: &Path, defines: &[String]) -> Result<Mesh, Outcome> {
         let out = self.out();
         let mut arguments = ["--hardwarnings", "--export-format", "binstl", "-o"].map(String::from).to_vec();
         arguments.push(out.display().to_string());
-        for define in [what.to_string(), format!("at=[{},{},{}]", at.x, at.y, at.z)] {
-            arguments.extend(["-D".to_string(), define]);
+        for define in defines {
+            arguments.extend(["-D".to_string(), define.clone()]);
         }
-        arguments.push(self.folder.join("gate.scad").display().to_string());
+        arguments.push(source.display().to_string());
         let ran = run(&self.program, &arguments)?;
         let said = ran.all();
         let bad = said.lines().find(|l| ["ERROR", "WARNING", "EXPORT-"].iter().any(|w| l.starts_with(w)));
@@ -121,6 +149,16 @@ impl OpenScad {
     fn out(&self) -> PathBuf {
         self.folder.join(format!("{}.stl", self.runs.fetch_add(1, Ordering::Relaxed)))
     }
+}
+
+/// Volume that only one of two solids has, mm3.
+fn differs(theirs: &Mesh, file: &Path) -> Result<f64, String> {
+    let ours = fs::File::open(file).and_then(|mut f| stl::read(&mut f)).map_err(|e| e.to_string())?;
+    let (a, b) = (
+        Solid::of(theirs).map_err(|e| format!("its solid: {e}"))?,
+        Solid::of(&ours).map_err(|e| format!("ours: {e}"))?,
+    );
+    Ok(a.minus(&b).volume() + b.minus(&a).volume())
 }
 
 /// Pairs in one run: a dozen seconds of work for parts of two thousand triangles, and far from the time limit.

@@ -5,23 +5,29 @@
 //! not for *free*); they are listed as assumed.
 
 mod cone;
+mod direction;
 mod flush;
+mod known;
 mod local;
 mod overlap;
 mod polygon;
 mod shape;
 mod touch;
 
+pub use direction::Assumption;
+pub use known::Accuracy;
 pub use touch::Why;
 
 use crate::assembly::{Assembly, PartIx};
 use crate::contact::Patch;
+use direction::{Direction, settled};
 use flush::Facing;
 use glam::DVec3;
 use parry3d_f64::bounding_volume::{Aabb, BoundingVolume};
 use parry3d_f64::partitioning::{Bvh, BvhBuildStrategy};
 use rayon::prelude::*;
 use shape::Shape;
+use touch::Touch;
 
 /// What is known of a patch beside its polygon.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -32,6 +38,8 @@ pub struct Facts {
     /// Angle between the two surfaces, in radians: measured for faces, a bound for edges, nothing to measure
     /// for points.
     pub tilt: f64,
+    /// By how much the normal may be off as far as the files tell, in radians.
+    pub known: f64,
 }
 
 /// What touches.
@@ -62,6 +70,8 @@ pub struct MeshContacts {
     pub patches: Vec<Patch>,
     pub facts: Vec<Facts>,
     pub assumed: Vec<Assumed>,
+    /// What was made one because it could not be told apart.
+    pub settled: Assumption,
 }
 
 /// Two parts that share space.
@@ -83,13 +93,20 @@ pub struct Overlap {
 #[error("{}", .0.iter().map(Overlap::to_string).collect::<Vec<_>>().join("\n"))]
 pub struct ContactFaults(pub Vec<Overlap>);
 
-/// Finds where parts touch. `tolerance` in model units; larger than zero.
+/// Finds where parts touch. `tolerance` in model units; larger than zero. `accuracy` says for each part how well it
+/// is known; a part that it does not reach is taken as exact.
 ///
 /// # Errors
 /// All pairs that overlap by more than the tolerance.
-pub fn mesh_patches(assembly: &Assembly, tolerance: f64) -> Result<MeshContacts, ContactFaults> {
+pub fn mesh_patches(
+    assembly: &Assembly,
+    accuracy: &[Accuracy],
+    tolerance: f64,
+) -> Result<MeshContacts, ContactFaults> {
     let origin = middle(assembly);
-    let shapes: Vec<Shape> = assembly.ids().map(|p| Shape::new(assembly, p, origin)).collect();
+    let normals = known::normals(assembly, accuracy, tolerance);
+    let shapes: Vec<Shape> =
+        assembly.ids().map(|p| Shape::new(assembly, p, origin, &normals[p.at()])).collect();
     let pairs = near_pairs(&shapes, tolerance);
     let found: Vec<Result<MeshContacts, Overlap>> = pairs
         .par_iter()
@@ -103,12 +120,28 @@ pub fn mesh_patches(assembly: &Assembly, tolerance: f64) -> Result<MeshContacts,
     if !faults.is_empty() {
         return Err(ContactFaults(faults));
     }
-    Ok(good.into_iter().flatten().fold(MeshContacts::default(), |mut all, c| {
+    let all = good.into_iter().flatten().fold(MeshContacts::default(), |mut all, c| {
         all.patches.extend(c.patches);
         all.facts.extend(c.facts);
         all.assumed.extend(c.assumed);
         all
-    }))
+    });
+    Ok(with_settled_normals(all))
+}
+
+/// The contacts with normals made one that cannot be told apart, and corners moved into the planes of theirs.
+fn with_settled_normals(mut all: MeshContacts) -> MeshContacts {
+    let given = all.patches.iter().zip(&all.facts).map(|(p, f)| Direction { n: p.normal, known: f.known });
+    let (normals, assumption) = settled(&given.collect::<Vec<_>>());
+    for (patch, d) in all.patches.iter_mut().zip(normals) {
+        if d.n != patch.normal {
+            let middle = patch.corners.iter().sum::<DVec3>() / patch.corners.len() as f64;
+            patch.corners.iter_mut().for_each(|p| *p -= (*p - middle).dot(d.n) * d.n);
+            patch.normal = d.n;
+        }
+    }
+    all.settled = assumption;
+    all
 }
 
 /// Middle of the assembly's box: coordinates about it are as small as they can be.
@@ -143,21 +176,22 @@ fn touching(a: &Shape, b: &Shape, origin: DVec3, tolerance: f64) -> MeshContacts
     let back = |corners: &[DVec3]| corners.iter().map(|&p| p + origin).collect::<Vec<_>>();
     let patch =
         |normal: DVec3, corners: &[DVec3]| Patch { a: a.part, b: b.part, normal, corners: back(corners) };
-    let flat = faces
-        .iter()
-        .map(|f| (patch(f.normal, &f.corners), Facts { kind: Kind::Face, gap: f.gap, tilt: f.tilt }));
-    let rest = small.rows.iter().map(|t| (patch(t.normal, &t.corners), small_facts(&t.corners, tolerance)));
+    let flat = faces.iter().map(|f| {
+        (patch(f.normal, &f.corners), Facts { kind: Kind::Face, gap: f.gap, tilt: f.tilt, known: f.known })
+    });
+    let rest = small.rows.iter().map(|t| (patch(t.normal, &t.corners), small_facts(t, tolerance)));
     let (patches, facts) = flat.chain(rest).unzip();
     let assumed = small.passed.iter();
     let assumed =
         assumed.map(|q| Assumed { a: a.part, b: b.part, corners: back(&q.corners), why: q.why }).collect();
-    MeshContacts { patches, facts, assumed }
+    MeshContacts { patches, facts, assumed, settled: Assumption::default() }
 }
 
 /// An edge that stays within the tolerance of a face over a stretch may lean by that over its length.
-fn small_facts(corners: &[DVec3], gap: f64) -> Facts {
-    match corners {
-        [p, q] => Facts { kind: Kind::Edge, gap, tilt: (gap / p.distance(*q)).atan() },
-        _ => Facts { kind: Kind::Point, gap, tilt: 0.0 },
+fn small_facts(t: &Touch, gap: f64) -> Facts {
+    let known = t.known;
+    match t.corners[..] {
+        [p, q] => Facts { kind: Kind::Edge, gap, tilt: (gap / p.distance(q)).atan(), known },
+        _ => Facts { kind: Kind::Point, gap, tilt: 0.0, known },
     }
 }

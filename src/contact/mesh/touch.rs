@@ -20,6 +20,8 @@ use std::collections::BTreeMap;
 pub(super) struct Touch {
     pub normal: DVec3,
     pub corners: Vec<DVec3>,
+    /// By how much the normal may be off, in radians.
+    pub known: f64,
 }
 
 /// Why a contact got no row.
@@ -88,9 +90,9 @@ fn add(all: &mut Touches, place: &Place, faces: &[Flush], tolerance: f64) {
         Ok(_) if by_face && place.a.form == Form::Convex && place.b.form == Form::Convex => {}
         Ok(normals) => {
             let says = |n: DVec3, p: DVec3| known(all, faces, n, p, reach);
-            let new = normals.into_iter().filter(|&n| !covered(&|p| says(n, p)));
-            let new: Vec<Touch> =
-                new.map(|normal| Touch { normal, corners: place.corners.clone() }).collect();
+            let new = normals.into_iter().filter(|&(n, _)| !covered(&|p| says(n, p)));
+            let touch = |(normal, known)| Touch { normal, known, corners: place.corners.clone() };
+            let new: Vec<Touch> = new.map(touch).collect();
             all.rows.extend(new);
         }
         Err(_) if by_face || by_row => {}
@@ -141,12 +143,12 @@ fn angle(m: DVec3, n: DVec3) -> f64 {
     m.cross(n).length().atan2(m.dot(n))
 }
 
-/// The normals, from the first to the second, of the rows that hold at a place.
-fn verdict(place: &Place) -> Result<Vec<DVec3>, Why> {
+/// The normals, from the first to the second, of the rows that hold at a place, and how well they are known.
+fn verdict(place: &Place) -> Result<Vec<(DVec3, f64)>, Why> {
     let yields = |l: &Local| matches!(l.form, Form::Flat | Form::Reflex);
-    let own = place.a.normals.iter().copied().filter(|_| yields(place.a));
-    let other = place.b.normals.iter().map(|n| -n).filter(|_| yields(place.b));
-    let rows: Vec<DVec3> = own.chain(other).collect();
+    let own = place.a.normals.iter().map(|&n| (n, place.a.known)).filter(|_| yields(place.a));
+    let other = place.b.normals.iter().map(|&n| (-n, place.b.known)).filter(|_| yields(place.b));
+    let rows: Vec<(DVec3, f64)> = own.chain(other).collect();
     if !rows.is_empty() {
         return Ok(rows);
     }
@@ -154,11 +156,24 @@ fn verdict(place: &Place) -> Result<Vec<DVec3>, Why> {
         return Err(Why::Saddle);
     }
     match separation(&place.a.normals, &place.b.normals) {
-        Separation::One(n) => Ok(vec![n]),
+        Separation::One(n) => Ok(vec![(n, of_edges(place.a, place.b))]),
         Separation::Many => Err(Why::ManyNormals),
         Separation::None => Err(Why::NoNormal),
         Separation::Undecided => Err(Why::ManyFaces),
     }
+}
+
+/// How well the common perpendicular of two edges is known: each edge is the line of two faces, and errors grow with
+/// the inverse of the sine between what is crossed. Corners of more faces are taken for their sharpest edge.
+fn of_edges(a: &Local, b: &Local) -> f64 {
+    let edge = |l: &Local| {
+        let pairs =
+            l.normals.iter().enumerate().flat_map(|(k, m)| l.normals[..k].iter().map(|n| m.cross(*n)));
+        pairs.max_by(|x, y| x.length_squared().total_cmp(&y.length_squared())).unwrap_or(DVec3::ZERO)
+    };
+    let (d, e) = (edge(a), edge(b));
+    let sine = d.normalize_or_zero().cross(e.normalize_or_zero()).length();
+    2.0 * (a.known / d.length() + b.known / e.length()) / sine
 }
 
 fn on_polygon(f: &Flush, p: DVec3, reach: f64) -> bool {

@@ -6,22 +6,25 @@
 mod blocking;
 mod flex;
 mod interlock;
-mod repeats;
+pub mod repeats;
+mod sampling;
 mod weave;
 
 pub use blocking::{
     ArcAnswer, BlockingAnswer, CellAnswer, Connected, DbgAnswer, Found, NdbgAnswer, ReachWord, blocking, dbg,
 };
-pub use flex::{CoreAnswer, FlexAnswer, flex};
+pub use flex::{CoreAnswer, FlexAnswer, OrbitAnswer, SymmetryOfParts, flex};
 pub use interlock::{
     DirectionsAnswer, InterlockAnswer, InterlockWord, KeyAnswer, LockedCore, SearchedAnswer, interlock,
 };
-pub use repeats::{RepeatsAnswer, RepeatsRow, repeats};
+pub use repeats::RepeatsAnswer;
+pub use sampling::{check_of, refined};
 pub use weave::{WeaveAnswer, weave};
 
 use crate::assembly::{Assembly, PartIx};
 use crate::contact::Joined;
 use crate::locking::{Check, Motion, Stress, Twist, Verdict};
+use crate::sampling::{Refined, Sampling, standing};
 use crate::sequence::Plan;
 use glam::DVec3;
 use schemars::JsonSchema;
@@ -137,6 +140,12 @@ pub struct CheckAnswer {
     /// Keys and cores.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub interlock: Option<InterlockAnswer>,
+    /// Margins, and whether the verdicts hold beyond the samples.
+    #[serde(flatten)]
+    pub sampling: Sampling,
+    /// The check repeated with more samples, where that was asked for.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub refine: Option<Refined>,
     pub remarks: Vec<String>,
     pub source: Source,
     pub checksum: String,
@@ -164,6 +173,8 @@ pub struct PlanAnswer {
 pub enum Sealed {
     Check(Box<CheckAnswer>),
     Plan(Box<PlanAnswer>),
+    Flex(Box<FlexAnswer>),
+    Repeats(Box<RepeatsAnswer>),
 }
 
 pub fn ids(assembly: &Assembly, parts: &[PartIx]) -> Vec<String> {
@@ -187,6 +198,8 @@ pub fn check(joined: &Joined, check: &Check, source: Source) -> CheckAnswer {
         fixed: check.fixed.map(|p| assembly.part(p).id.clone()),
         interlocked: None,
         interlock: None,
+        sampling: standing(joined, check),
+        refine: None,
         remarks: joined.remarks.clone(),
         source,
         checksum: String::new(),

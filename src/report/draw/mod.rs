@@ -18,7 +18,9 @@ pub mod mesh;
 mod paint;
 pub mod palette;
 pub mod scene;
+pub mod sheet;
 pub mod sphere;
+mod strokes;
 
 pub use camera::{Projection, View};
 pub use image::{Image, Size, beside, write_png};
