@@ -37,7 +37,7 @@ pub struct Blocking {
     /// Write the graphs as GraphML
     #[arg(long, value_name = "FILE")]
     pub graphml: Option<PathBuf>,
-    /// Draw the cells on the sphere of directions, as SVG
+    /// Draw the cells on the sphere of directions: PNG by the file's ending, else SVG
     #[arg(long, value_name = "FILE")]
     pub sphere: Option<PathBuf>,
 }
@@ -116,7 +116,9 @@ fn write(
     }
     if let Some(path) = &asked.sphere {
         let Some(Ok(ndbg)) = all else { return Err(missing(path)) };
-        files.push((path, sphere::svg(ndbg, &answer.name).into_bytes()));
+        let sheet = sphere::sheet(ndbg, &answer.name);
+        let png = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("png"));
+        files.push((path, if png { sheet.png().map_err(trouble)? } else { sheet.svg().into_bytes() }));
     }
     for (path, bytes) in files {
         write_whole(path, &bytes)?;

@@ -8,7 +8,7 @@ use super::{locked_alone, parts};
 use crate::assembly::PartIx;
 use crate::contact::Joined;
 use crate::report::answer::{
-    CheckAnswer, DirectionsAnswer, InterlockAnswer, InterlockWord, KeyAnswer, Proof, Word,
+    CheckAnswer, DirectionsAnswer, InterlockAnswer, InterlockWord, KeyAnswer, LockedCore, Proof, Word,
 };
 use glam::DVec3;
 use std::collections::BTreeSet;
@@ -34,7 +34,11 @@ pub fn claims(joined: &Joined, a: &CheckAnswer) -> Checked {
     for k in &i.keys {
         key(joined, a, k).map_err(|why| format!("key {}: {why}", k.parts.join(", ")))?;
     }
-    for c in &i.cores {
+    // The whole as one core quotes the certificate that was held already.
+    let whole = |c: &LockedCore| {
+        c.parts.len() == a.parts && a.rigid.certificate.as_ref().is_some_and(|own| *own == c.certificate)
+    };
+    for c in i.cores.iter().filter(|c| !whole(c)) {
         locked_alone(joined, &c.parts, &c.certificate)
             .map(drop)
             .map_err(|why| format!("core {}: {why}", c.parts.join(", ")))?;

@@ -40,8 +40,8 @@ pub enum Reach {
     Finite,
 }
 
-/// Pairs of cells beyond this are not put into each other's way: each costs some 20 microseconds.
-pub const MOST_CELL_PAIRS: usize = 2_000_000;
+/// Pairs of cells beyond this are not put into each other's way: each costs up to 100 microseconds.
+pub const MOST_CELL_PAIRS: usize = 500_000;
 
 /// Arcs of all distinct graphs together beyond this are not kept: some hundred megabytes as an answer.
 pub const MOST_ARCS: usize = 5_000_000;

@@ -1,14 +1,14 @@
-//! Takes an NDBG; gives a drawing of the sphere of directions as SVG: two half spheres, equal in area, the regions
-//! colored by what comes apart there.
+//! Takes an NDBG; gives a drawing of the sphere of directions: two half spheres, equal in area, the regions colored by
+//! what comes apart there.
 //!
 //! x to the right and y up in both; the lower half is seen through the upper one. Color is never the only sign: arcs
 //! and single directions of their own are drawn thick and named in the legend. Not promised: exact outlines (arcs are
 //! drawn by chords of [`CHORD`] radians).
 
+use super::sheet::{Anchor, Mark, Rgb, Sheet, rectangle};
 use crate::blocking::ndbg::Ndbg;
 use glam::{DVec2, DVec3};
 use std::collections::BTreeSet;
-use std::fmt::Write;
 
 /// Arcs are drawn by chords of this many radians: they leave a disc of 220 pixels by less than a tenth of one.
 const CHORD: f64 = 0.05;
@@ -22,10 +22,10 @@ const WIDTH: f64 = 4.0 * RADIUS + 3.0 * MARGIN;
 const HEIGHT: f64 = 2.0 * RADIUS + 2.0 * MARGIN + LEGEND;
 
 /// Fill of a graph by its kind; light to dark for more components, all apart from one another in grey, too.
-const TIED: &str = "#c3c8d0";
-const STAYS: &str = "#9cc3e6";
-const PARTED: [&str; 5] = ["#fde3ad", "#f8b65c", "#e9832f", "#bd5a1c", "#6f2d0c"];
-const INK: &str = "#1a1a20";
+const TIED: Rgb = [195, 200, 208];
+const STAYS: Rgb = [156, 195, 230];
+const PARTED: [Rgb; 5] = [[253, 227, 173], [248, 182, 92], [233, 131, 47], [189, 90, 28], [111, 45, 12]];
+const INK: Rgb = [26, 26, 32];
 
 /// What a graph means to the eye.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -48,7 +48,7 @@ impl Kind {
         }
     }
 
-    fn fill(self) -> &'static str {
+    fn fill(self) -> Rgb {
         match self {
             Kind::Tied => TIED,
             Kind::Stays => STAYS,
@@ -68,35 +68,25 @@ impl Kind {
     }
 }
 
-/// The drawing as an SVG document.
-pub fn svg(ndbg: &Ndbg, name: &str) -> String {
-    let mut out = String::new();
-    let _ = writeln!(
-        out,
-        r#"<svg xmlns="http://www.w3.org/2000/svg" role="img" width="{WIDTH}" height="{HEIGHT}" viewBox="0 0 {WIDTH} {HEIGHT}" font-family="sans-serif" font-size="14">"#
-    );
-    let count = |k: u8| ndbg.regions.iter().filter(|r| r.dimension == k).count();
-    let about = format!("{} patches, {} arcs, {} single directions", count(2), count(1), count(0));
-    let _ = writeln!(out, "<title>Directions of {}</title>", escaped(name));
-    let _ = writeln!(out, "<desc>The sphere of directions by directional blocking graph: {about}.</desc>");
-    let _ = writeln!(out, r##"<rect width="100%" height="100%" fill="#ffffff"/>"##);
-    faces(&mut out, ndbg);
-    edges(&mut out, ndbg);
-    points(&mut out, ndbg);
-    labels(&mut out);
-    legend(&mut out, ndbg, &about);
-    out + "</svg>\n"
+/// The drawing.
+pub fn sheet(ndbg: &Ndbg, name: &str) -> Sheet {
+    let mut marks = Vec::new();
+    faces(&mut marks, ndbg);
+    edges(&mut marks, ndbg);
+    points(&mut marks, ndbg);
+    labels(&mut marks);
+    legend(&mut marks, ndbg, name);
+    Sheet { width: WIDTH, height: HEIGHT, marks }
 }
 
-fn escaped(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
+fn center(upper: bool) -> DVec2 {
+    DVec2::new(if upper { MARGIN + RADIUS } else { 2.0 * MARGIN + 3.0 * RADIUS }, MARGIN + RADIUS)
 }
 
 /// Where a direction of the upper (or lower) half falls; Lambert's equal-area projection.
-fn place(d: DVec3, upper: bool) -> DVec2 {
-    let flat = d.truncate() / (1.0 + d.z.abs()).sqrt();
-    let middle = if upper { MARGIN + RADIUS } else { 2.0 * MARGIN + 3.0 * RADIUS };
-    DVec2::new(middle + flat.x * RADIUS, MARGIN + RADIUS - flat.y * RADIUS)
+fn place(d: DVec3, upper: bool) -> [f64; 2] {
+    let flat = d.truncate() / (1.0 + d.z.abs()).sqrt() * RADIUS;
+    (center(upper) + DVec2::new(flat.x, -flat.y)).to_array()
 }
 
 /// Directions along an edge of the arrangement, from its start to its end.
@@ -107,23 +97,13 @@ fn along(ndbg: &Ndbg, edge: usize) -> Vec<DVec3> {
     (0..=steps).map(at).collect()
 }
 
-fn path(points: impl Iterator<Item = DVec2>) -> String {
-    let mut text = String::new();
-    for (k, p) in points.enumerate() {
-        let _ = write!(text, "{}{:.2} {:.2}", if k == 0 { "M" } else { "L" }, p.x, p.y);
-    }
-    text
-}
-
 fn kind_of_region(ndbg: &Ndbg, region: usize) -> Kind {
     Kind::of(ndbg, ndbg.regions[region].graph)
 }
 
 /// Each face lies in one half: the equator is part of every arrangement.
-fn faces(out: &mut String, ndbg: &Ndbg) {
-    let _ = writeln!(out, r#"<g id="patches" stroke-width="0.7" stroke-linejoin="round">"#);
+fn faces(marks: &mut Vec<Mark>, ndbg: &Ndbg) {
     for (k, face) in ndbg.arrangement.faces.iter().enumerate() {
-        let fill = kind_of_region(ndbg, ndbg.region_of[0][k]).fill();
         let upper = face.d.z >= 0.0;
         let rim = face.rim.iter().flat_map(|&(e, forward)| {
             let mut points = along(ndbg, e);
@@ -132,126 +112,133 @@ fn faces(out: &mut String, ndbg: &Ndbg) {
             }
             points
         });
-        let outline = path(rim.map(|d| place(d, upper)));
-        let _ = writeln!(out, r#"<path d="{outline}Z" fill="{fill}" stroke="{fill}"/>"#);
+        let points = rim.map(|d| place(d, upper)).collect();
+        marks.push(Mark::Fill { points, ink: kind_of_region(ndbg, ndbg.region_of[0][k]).fill() });
     }
-    let _ = writeln!(out, "</g>");
 }
 
-/// Thin where patches part, thick where the arc has a graph of its own.
-fn edges(out: &mut String, ndbg: &Ndbg) {
-    let _ = writeln!(out, r#"<g id="arcs" fill="none" stroke-linecap="round">"#);
-    let mut thick = Vec::new();
+/// Lines over the seams inside a region (its own color), where patches part (thin), and where an arc has a graph of its
+/// own (thick), pixels.
+const SEAM: f64 = 1.0;
+const THIN: f64 = 0.9;
+const THICK: f64 = 6.0;
+
+fn edges(marks: &mut Vec<Mark>, ndbg: &Ndbg) {
+    let (mut thin, mut thick) = (Vec::new(), Vec::new());
     for (k, e) in ndbg.arrangement.edges.iter().enumerate() {
         let own = ndbg.region_of[1][k];
-        let beside = [e.left, e.right].map(|f| ndbg.region_of[0][f]);
-        if beside == [own, own] {
+        let kind = kind_of_region(ndbg, own);
+        if [e.left, e.right].map(|f| ndbg.region_of[0][f]) == [own, own] {
+            stroke(marks, ndbg, k, kind.fill(), SEAM);
             continue;
         }
-        if ndbg.regions[own].dimension == 1 {
-            thick.push((k, kind_of_region(ndbg, own)));
+        thin.push(k);
+        if ndbg.regions[own].dimension == 1 && kind != Kind::Tied {
+            thick.push((k, kind));
         }
-        stroke(out, ndbg, k, INK, 0.9);
     }
-    for &(k, kind) in thick.iter().filter(|(_, kind)| *kind != Kind::Tied) {
-        stroke(out, ndbg, k, INK, 6.0);
-        stroke(out, ndbg, k, kind.fill(), 4.0);
-    }
-    let _ = writeln!(out, "</g>");
+    thin.into_iter().for_each(|k| stroke(marks, ndbg, k, INK, THIN));
+    thick.iter().for_each(|&(k, _)| stroke(marks, ndbg, k, INK, THICK));
+    thick.iter().for_each(|&(k, kind)| stroke(marks, ndbg, k, kind.fill(), THICK - 2.0));
 }
 
-/// Once in each half that the edge touches.
-fn stroke(out: &mut String, ndbg: &Ndbg, edge: usize, color: &str, width: f64) {
-    let points = along(ndbg, edge);
-    let middle = points[points.len() / 2].z + points[0].z + points[points.len() - 1].z;
-    let on_equator = points.iter().all(|d| d.z.abs() < CHORD * CHORD);
+/// In the half that the edge lies in; on the equator in both.
+fn stroke(marks: &mut Vec<Mark>, ndbg: &Ndbg, edge: usize, ink: Rgb, width: f64) {
+    let along = along(ndbg, edge);
+    let height = along.iter().map(|d| d.z).sum::<f64>() / along.len() as f64;
+    let on_equator = along.iter().all(|d| at_equator(*d));
     for upper in [true, false] {
-        if on_equator || (middle >= 0.0) == upper {
-            let line = path(points.iter().map(|&d| place(d, upper)));
-            let _ = writeln!(out, r#"<path d="{line}" stroke="{color}" stroke-width="{width}"/>"#);
+        if on_equator || (height >= 0.0) == upper {
+            let points = along.iter().map(|&d| place(d, upper)).collect();
+            marks.push(Mark::Line { points, ink, width });
         }
     }
+}
+
+/// So near the equator that the eye sees no difference: a fifth of a pixel.
+fn at_equator(d: DVec3) -> bool {
+    d.z.abs() < 1e-3
+}
+
+/// A dot of this radius, pixels.
+fn dot(marks: &mut Vec<Mark>, middle: [f64; 2], radius: f64, ink: Rgb) {
+    let corner = |k: u32| {
+        let (s, c) = (f64::from(k) * std::f64::consts::TAU / 24.0).sin_cos();
+        [middle[0] + radius * c, middle[1] + radius * s]
+    };
+    marks.push(Mark::Fill { points: (0..24).map(corner).collect(), ink });
 }
 
 /// Directions that have a graph of their own.
-fn points(out: &mut String, ndbg: &Ndbg) {
-    let _ = writeln!(out, r#"<g id="directions" stroke="{INK}" stroke-width="1.4">"#);
+fn points(marks: &mut Vec<Mark>, ndbg: &Ndbg) {
     for region in ndbg.regions.iter().filter(|r| r.dimension == 0) {
         let kind = Kind::of(ndbg, region.graph);
         let radius = if kind == Kind::Tied { 3.0 } else { 6.0 };
         for upper in [true, false] {
-            if region.d.z.abs() < CHORD * CHORD || (region.d.z > 0.0) == upper {
-                let p = place(region.d, upper);
-                let _ = writeln!(
-                    out,
-                    r#"<circle cx="{:.2}" cy="{:.2}" r="{radius}" fill="{}"/>"#,
-                    p.x,
-                    p.y,
-                    kind.fill()
-                );
+            if at_equator(region.d) || (region.d.z > 0.0) == upper {
+                let at = place(region.d, upper);
+                dot(marks, at, radius + 1.2, INK);
+                dot(marks, at, radius, kind.fill());
             }
         }
     }
-    let _ = writeln!(out, "</g>");
 }
 
-fn labels(out: &mut String) {
-    let _ = writeln!(out, r#"<g id="axes" fill="{INK}" text-anchor="middle">"#);
-    let word = |out: &mut String, p: DVec2, text: &str| {
-        let _ = writeln!(out, r#"<text x="{:.1}" y="{:.1}">{text}</text>"#, p.x, p.y);
-    };
+/// Size of letters, pixels.
+const LETTERS: f64 = 14.0;
+
+fn words(marks: &mut Vec<Mark>, at: DVec2, anchor: Anchor, text: impl Into<String>) {
+    marks.push(Mark::Words { at: at.to_array(), size: LETTERS, anchor, ink: INK, text: text.into() });
+}
+
+fn labels(marks: &mut Vec<Mark>) {
     for upper in [true, false] {
-        let o = place(if upper { DVec3::Z } else { DVec3::NEG_Z }, upper);
-        let _ = writeln!(
-            out,
-            r#"<circle cx="{}" cy="{}" r="{RADIUS}" fill="none" stroke="{INK}" stroke-width="1.2"/>"#,
-            o.x, o.y
-        );
-        let (sign, title) = if upper {
-            ("+z", "upper half, z &gt;= 0")
-        } else {
-            ("-z", "lower half, z &lt;= 0, seen through")
-        };
-        let _ = writeln!(out, r#"<path d="M{} {}h8m-4 -4v8" stroke="{INK}" fill="none"/>"#, o.x - 4.0, o.y);
-        word(out, o + DVec2::new(18.0, -8.0), sign);
-        word(out, o + DVec2::new(RADIUS + 14.0, 5.0), "+x");
-        word(out, o + DVec2::new(-RADIUS - 14.0, 5.0), "-x");
-        word(out, o + DVec2::new(0.0, -RADIUS - 6.0), "+y");
-        word(out, o + DVec2::new(0.0, RADIUS + 17.0), "-y");
-        word(out, o + DVec2::new(0.0, RADIUS + 36.0), title);
+        let o = center(upper);
+        let rim = (0..=126).map(|k| {
+            let (s, c) = (f64::from(k) * std::f64::consts::TAU / 126.0).sin_cos();
+            (o + RADIUS * DVec2::new(c, s)).to_array()
+        });
+        marks.push(Mark::Line { points: rim.collect(), ink: INK, width: 1.2 });
+        let (sign, title) =
+            if upper { ("+z", "upper half, z >= 0") } else { ("-z", "lower half, z <= 0, seen through") };
+        for way in [DVec2::X, DVec2::Y] {
+            let points = vec![(o - 4.0 * way).to_array(), (o + 4.0 * way).to_array()];
+            marks.push(Mark::Line { points, ink: INK, width: 1.0 });
+        }
+        let near = [
+            (DVec2::new(18.0, -8.0), sign),
+            (DVec2::new(RADIUS + 14.0, 5.0), "+x"),
+            (DVec2::new(-RADIUS - 14.0, 5.0), "-x"),
+            (DVec2::new(0.0, -RADIUS - 6.0), "+y"),
+            (DVec2::new(0.0, RADIUS + 17.0), "-y"),
+            (DVec2::new(0.0, RADIUS + 36.0), title),
+        ];
+        near.into_iter().for_each(|(by, text)| words(marks, o + by, Anchor::Middle, text));
     }
-    let _ = writeln!(out, "</g>");
 }
 
-fn legend(out: &mut String, ndbg: &Ndbg, about: &str) {
+fn legend(marks: &mut Vec<Mark>, ndbg: &Ndbg, name: &str) {
     let kinds: BTreeSet<(Kind, u8)> =
         ndbg.regions.iter().map(|r| (Kind::of(ndbg, r.graph), r.dimension)).collect();
-    let top = 2.0 * RADIUS + 2.0 * MARGIN + 12.0;
-    let _ = writeln!(out, r#"<g id="legend" fill="{INK}">"#);
     let shapes: BTreeSet<Kind> = kinds.iter().map(|k| k.0).collect();
+    let top = 2.0 * RADIUS + 2.0 * MARGIN + 12.0;
     for (k, kind) in shapes.iter().enumerate() {
-        let (x, y) = (MARGIN + (k % 2) as f64 * (WIDTH / 2.0 - MARGIN), top + (k / 2) as f64 * 23.0);
-        let has = |d: u8| kinds.contains(&(*kind, d));
-        let mut also = Vec::new();
-        also.extend((has(2) && (has(1) || has(0))).then_some("patches"));
-        also.extend(has(1).then_some("arcs"));
-        also.extend(has(0).then_some("single directions"));
-        let also = if also.is_empty() { String::new() } else { format!(" ({})", also.join(", ")) };
-        let _ = writeln!(
-            out,
-            r#"<rect x="{x}" y="{}" width="18" height="14" fill="{}" stroke="{INK}"/><text x="{}" y="{}">{}{also}</text>"#,
-            y,
-            kind.fill(),
-            x + 26.0,
-            y + 12.0,
-            kind.words()
-        );
+        let at = DVec2::new(MARGIN + (k % 2) as f64 * (WIDTH / 2.0 - MARGIN), top + (k / 2) as f64 * 23.0);
+        let drawn = [(2, "patches"), (1, "arcs"), (0, "single directions")];
+        let drawn: Vec<&str> =
+            drawn.into_iter().filter(|(d, _)| kinds.contains(&(*kind, *d))).map(|d| d.1).collect();
+        marks.push(Mark::Fill { points: rectangle(at.x, at.y, 18.0, 14.0), ink: INK });
+        marks.push(Mark::Fill { points: rectangle(at.x + 1.0, at.y + 1.0, 16.0, 12.0), ink: kind.fill() });
+        let text = format!("{} ({})", kind.words(), drawn.join(", "));
+        words(marks, at + DVec2::new(26.0, 12.0), Anchor::Start, text);
     }
-    let _ = writeln!(
-        out,
-        r#"<text x="{MARGIN}" y="{}">{about}; {} distinct blocking graphs.</text>"#,
-        HEIGHT - 14.0,
+    let count = |k: u8| ndbg.regions.iter().filter(|r| r.dimension == k).count();
+    let about = format!(
+        "{name}: {} patches, {} arcs, {} single directions; {} distinct blocking graphs.",
+        count(2),
+        count(1),
+        count(0),
         ndbg.graphs.len()
     );
-    let _ = writeln!(out, "</g>");
+    words(marks, DVec2::new(MARGIN, HEIGHT - 14.0), Anchor::Start, about);
 }
