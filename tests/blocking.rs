@@ -275,10 +275,9 @@ fn read_graphml(bytes: &[u8]) -> Vec<(String, bool, Vec<Vec<String>>, Vec<[Strin
             Event::Start(e) | Event::Empty(e) => {
                 let get = |key: &str| {
                     let a = e.try_get_attribute(key).expect("attributes")?;
-                    let raw = String::from_utf8(a.value.to_vec()).expect("UTF-8");
-                    Some(quick_xml::escape::unescape(&raw).expect("entities").into_owned())
+                    Some(quick_xml::escape::unescape(&a.value).expect("entities").into_owned())
                 };
-                inside = String::from_utf8(e.name().as_ref().to_vec()).expect("UTF-8");
+                inside = e.name().as_ref().to_string();
                 match inside.as_str() {
                     "graph" => out.push((
                         get("id").expect("id"),
