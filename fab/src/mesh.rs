@@ -60,6 +60,15 @@ impl Mesh {
     }
 
     pub fn closure(&self) -> Closure {
+        let open = self.loose_edges();
+        match open.first() {
+            None => Closure::Closed,
+            Some(&(v, _)) => Closure::Open { edges: open.len(), at: self.vertices[v as usize] },
+        }
+    }
+
+    /// Edges that are not between two opposite triangles, each by its lower and its higher vertex.
+    pub fn loose_edges(&self) -> Vec<(u32, u32)> {
         let mut uses: BTreeMap<(u32, u32), (u32, u32)> = BTreeMap::new();
         for t in &self.triangles {
             for k in 0..3 {
@@ -68,11 +77,7 @@ impl Mesh {
                 if a < b { entry.0 += 1 } else { entry.1 += 1 }
             }
         }
-        let open: Vec<_> = uses.iter().filter(|(_, n)| **n != (1, 1)).map(|(e, _)| e.0).collect();
-        match open.first() {
-            None => Closure::Closed,
-            Some(&v) => Closure::Open { edges: open.len(), at: self.vertices[v as usize] },
-        }
+        uses.into_iter().filter(|(_, n)| *n != (1, 1)).map(|(e, _)| e).collect()
     }
 
     /// Bodies and genus of a closed mesh (V - E + F = 2 bodies - 2 genus, with E = 3F / 2).

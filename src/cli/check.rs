@@ -16,7 +16,7 @@ use crate::sampling::{Beyond, Refined, Standing, refined};
 pub fn check(placed: &Placed, fix: Option<&str>, refine: bool) -> Result<Told, Trouble> {
     let joined = &placed.joined;
     let fix = fix.map(|id| questions::part(joined, id)).transpose()?;
-    let check = locking::check(&joined.assembly, &joined.patches, fix);
+    let check = locking::check_loose(&joined.assembly, &joined.patches, &joined.loose, fix);
     let levels = refine.then(|| refined(&placed.spec)).transpose()?;
     Ok(told(placed, &check, levels))
 }

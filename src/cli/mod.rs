@@ -7,6 +7,7 @@ pub mod atlas;
 mod blocking;
 mod check;
 pub mod flex;
+mod hands;
 mod interlock;
 mod load;
 mod make;
@@ -58,7 +59,7 @@ fn dispatch(args: &Args) -> Result<Told, Trouble> {
         Some(Verb::Blocking(asked)) => blocking::blocking(&load::spec(&asked.file)?.joined()?, asked),
         Some(Verb::Flex(asked)) => flex::flex(asked),
         Some(Verb::Repeats(asked)) => repeats::repeats(asked),
-        Some(Verb::Chirality { subject }) => questions::chirality(subject),
+        Some(Verb::Chirality { subject, export }) => hands::chirality(subject, export.as_deref()),
         Some(Verb::Weave { subject, svg, wif }) => questions::weave(subject, svg.as_deref(), wif.as_deref()),
         Some(Verb::Fab(asked)) => package::fab(&load::spec(&asked.file)?.joined()?, asked, &args.common),
         Some(Verb::Processes { name }) => package::processes(name.as_deref()),

@@ -10,9 +10,11 @@ mod factor;
 pub mod margin;
 mod rows;
 mod solve;
+mod vouch;
 
-pub use decide::{Force, Gap, Motion, Stress, Twist, Verdict, decide};
+pub use decide::{Force, Gap, Motion, ROUND_OFF, Stress, Twist, Verdict, decide};
 pub use rows::{Freedom, Row, Unknowns, rows};
+pub use vouch::check_loose;
 
 use crate::assembly::{Assembly, PartIx};
 use crate::contact::Patch;

@@ -88,6 +88,8 @@ pub struct ClassAnswer {
     pub step: [u32; 2],
     /// The word for the class: that of its smallest swatch where that is locked and the lemma applies.
     pub holds: String,
+    /// A strand of the smallest swatch that no piece crosses; null where each is crossed.
+    pub uncrossed: Option<String>,
     pub base: RepeatsRow,
 }
 
@@ -127,6 +129,7 @@ pub fn repeats(
     let class = |c: &Class| ClassAnswer {
         step: [c.step.0, c.step.1],
         holds: class_word(c).into(),
+        uncrossed: c.uncrossed.map(|s| s.to_string()),
         base: row(classes.0, &c.base, made),
     };
     let answer = RepeatsAnswer {
