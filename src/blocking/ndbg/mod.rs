@@ -5,6 +5,10 @@
 //! differ by less than [`NEAR`] count as one, which is far above round-off: every sign beyond that is the exact one.
 //! Cost: about the square of the critical arcs; budgets are stated and what exceeds them is not run.
 //!
+//! Tried and left: whole great circles instead of arcs (a 2 x 2 window has thousands on the whole way, most of them
+//! critical nowhere); one arrangement of the edges of all free sectors (60,000 crossings for eight strands). So each pair
+//! gets an arrangement of its own first, and only what is critical there goes into that of all.
+//!
 //! Laws (tested):
 //! 1. What stops a part along a direction stops it along all directions near by: a graph on an edge or at a vertex has
 //!    no arc that the graphs around it lack.
