@@ -2,6 +2,7 @@
 
 mod atlas;
 mod bad_input;
+mod blocking;
 mod certificates;
 mod cli;
 mod exact;
@@ -9,6 +10,7 @@ mod fab;
 mod flex;
 mod golden;
 mod hands;
+mod interlock;
 mod known;
 mod laws;
 mod mesh;

@@ -64,6 +64,8 @@ pub enum Verb {
         #[arg(long, value_name = "LENGTH", value_parser = length)]
         clearance: Option<f64>,
     },
+    /// Which part stops which: along a direction, or over all of them: `weavelock blocking roof.toml --sphere roof.svg`
+    Blocking(super::blocking::Blocking),
     /// Does it need flexible parts? The fewest, all such sets, and the bound's proof: `weavelock flex plain.toml`
     Flex(super::flex::Asked),
     /// The smallest repetition of the unit tile that locks: `weavelock repeats [2,2,1] --swatch n,2n --phases all`
