@@ -405,9 +405,15 @@ fn every_tile_of_the_atlas_range_is_made_or_told() {
                 let job = woven(&format!("[{a},{},{c}]", n - a), &swatch, 6, rise);
                 for clearance in [0.2, 0.6, 1.5] {
                     let report = made(&job, &recipe(clearance));
-                    let bad: Vec<_> = report.findings.iter().filter(|f| f.severity != Severity::Note).collect();
+                    let bad: Vec<_> =
+                        report.findings.iter().filter(|f| f.severity != Severity::Note).collect();
                     let worst = report.worst();
-                    println!("SWEEP [{a},{n},{c}] rise {rise} clearance {clearance}: {worst:?} {} {:?} {:.2}", bad.len(), bad.first().map(|f| (&f.what, &f.place.parts)), start.elapsed().as_secs_f64());
+                    println!(
+                        "SWEEP [{a},{n},{c}] rise {rise} clearance {clearance}: {worst:?} {} {:?} {:.2}",
+                        bad.len(),
+                        bad.first().map(|f| (&f.what, &f.place.parts)),
+                        start.elapsed().as_secs_f64()
+                    );
                 }
             }
         }

@@ -163,8 +163,16 @@ fn of_walls(part: &PartReport) -> Vec<Finding> {
     let least = part.least_wall_mm;
     let walls = part.wall.unwrap_or_default();
     let thin = walls.thinnest.map(|w| {
-        let what = format!("a wall is {:.3} mm thick; {} makes no wall thinner than {least} mm", w.thickness_mm, part.process);
-        finding(Severity::Warning, w.at.to_vec(), what, "take a larger pitch, a thicker shape there, or a process with a finer wall")
+        let what = format!(
+            "a wall is {:.3} mm thick; {} makes no wall thinner than {least} mm",
+            w.thickness_mm, part.process
+        );
+        finding(
+            Severity::Warning,
+            w.at.to_vec(),
+            what,
+            "take a larger pitch, a thicker shape there, or a process with a finer wall",
+        )
     });
     let sharp = walls.sharpest.map(|s| {
         let what = format!(

@@ -59,7 +59,10 @@ impl Recipe {
         let known: BTreeSet<&str> = job.parts.iter().map(|p| p.id.as_str()).collect();
         let fault = |id: &String| Fault {
             place: "fab.parts".into(),
-            what: format!("names a process for \"{id}\", which is no part (hint: parts are {})", some(&known)),
+            what: format!(
+                "names a process for \"{id}\", which is no part (hint: parts are {})",
+                some(&known)
+            ),
         };
         self.parts.keys().filter(|id| !known.contains(id.as_str())).map(fault).collect()
     }
@@ -205,8 +208,7 @@ fn piece(id: &str, stem: String, offset: Offset, scale: Scale) -> Piece {
 /// Gaps of what was read back; a piece that comes too near to another is not to be written.
 fn measure(job: &Job, recipe: &Recipe, snap: f64, pieces: &mut [Piece]) -> Vec<Gap> {
     let neighbours = job.neighbours();
-    let clearances: Vec<f64> =
-        pieces.iter().map(|p| recipe.process_of(&p.id).clearance.value).collect();
+    let clearances: Vec<f64> = pieces.iter().map(|p| recipe.process_of(&p.id).clearance.value).collect();
     let promise =
         Promise { clearances: &clearances, round_off: PAIR_IN_SNAPS * snap, neighbours: &neighbours };
     let made: Vec<Option<Made>> = pieces.iter_mut().map(|p| p.made.take()).collect();

@@ -43,7 +43,13 @@ pub struct Slicing {
 }
 
 /// What came of slicing a plate: the check, and the grams of filament where it was sliced.
-pub fn plate(program: &str, name: &str, file: &Path, slicing: &Slicing, scratch: &Path) -> (Check, Option<f64>) {
+pub fn plate(
+    program: &str,
+    name: &str,
+    file: &Path,
+    slicing: &Slicing,
+    scratch: &Path,
+) -> (Check, Option<f64>) {
     let out = scratch.join(format!(".slicing-{}.gcode", std::process::id()));
     let sliced = sliced(program, file, slicing, &out);
     let _ = std::fs::remove_file(&out);

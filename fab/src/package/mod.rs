@@ -170,7 +170,10 @@ fn pictures(package: &mut PackageReport, output: &Output, order: &Order) -> Vec<
     match (order.draw)(&shown) {
         Ok(files) => files,
         Err(why) => {
-            package.report.findings.push(Finding::note(format!("no pictures: {why}"), "the files are whole without them"));
+            package
+                .report
+                .findings
+                .push(Finding::note(format!("no pictures: {why}"), "the files are whole without them"));
             vec![]
         }
     }
@@ -181,7 +184,8 @@ fn stale(out: &Path) -> Vec<String> {
     let text = std::fs::read_to_string(out.join(LIST)).unwrap_or_default();
     let old: Option<BTreeMap<String, serde_json::Value>> = serde_json::from_str(&text).ok();
     let files = old.and_then(|o| o.get("files").and_then(|f| f.as_array().cloned())).unwrap_or_default();
-    let inside = |name: &str| Path::new(name).components().all(|c| matches!(c, std::path::Component::Normal(_)));
+    let inside =
+        |name: &str| Path::new(name).components().all(|c| matches!(c, std::path::Component::Normal(_)));
     files.iter().filter_map(|f| f.as_str()).filter(|f| inside(f)).map(String::from).collect()
 }
 

@@ -30,7 +30,8 @@ pub fn arrange(sizes: &[(DVec3, String)], bed: &Bed) -> Plates {
     let room = DVec3::from_array(bed.size);
     let free = room.truncate() - DVec2::splat(2.0 * SPACING);
     let fits = |s: DVec3| s.x <= free.x && s.y <= free.y && s.z <= room.z;
-    let (mut fitting, too_large): (Vec<usize>, Vec<usize>) = (0..sizes.len()).partition(|&k| fits(sizes[k].0));
+    let (mut fitting, too_large): (Vec<usize>, Vec<usize>) =
+        (0..sizes.len()).partition(|&k| fits(sizes[k].0));
     fitting.sort_by(|&a, &b| sizes[b].0.y.total_cmp(&sizes[a].0.y).then(a.cmp(&b)));
     let mut plates: Vec<Vec<Stand>> = Vec::new();
     let (mut corner, mut depth) = (DVec2::ZERO, 0.0_f64);
@@ -63,7 +64,10 @@ mod tests {
         let bed = Bed { name: "b".into(), size: [100.0, 80.0, 50.0] };
         let sizes: Vec<(DVec3, String)> = (0..13)
             .map(|k| (DVec3::new(20.0 + f64::from(k), 10.0 + f64::from(k % 5), 5.0), k.to_string()))
-            .chain([(DVec3::new(20.0, 20.0, 51.0), "tall".into()), (DVec3::new(95.0, 5.0, 5.0), "long".into())])
+            .chain([
+                (DVec3::new(20.0, 20.0, 51.0), "tall".into()),
+                (DVec3::new(95.0, 5.0, 5.0), "long".into()),
+            ])
             .collect();
         let plates = arrange(&sizes, &bed);
         assert_eq!(plates.too_large, [13, 14]);

@@ -24,7 +24,11 @@ pub fn sheet(p: &PackageReport) -> Option<String> {
         if let Some(c) = &r.process.cavity {
             s += &format!(
                 "\nPoured at {} into {}, which bears {} ({}, grade {}).\n",
-                value(&c.pour), c.material, value(&c.bears), c.bears.source, c.bears.grade.sign()
+                value(&c.pour),
+                c.material,
+                value(&c.bears),
+                c.bears.source,
+                c.bears.grade.sign()
             );
         }
         s += &schedule(&r.process.schedule);
@@ -54,7 +58,10 @@ pub fn pour(p: &PackageReport) -> Option<String> {
     if routes.is_empty() {
         return None;
     }
-    let mut s = format!("# Pour sheet: {}\n\nOf the parts alone; what fills sprues, runners and boxes comes on top.\n", p.report.name);
+    let mut s = format!(
+        "# Pour sheet: {}\n\nOf the parts alone; what fills sprues, runners and boxes comes on top.\n",
+        p.report.name
+    );
     for r in routes {
         s += &format!("\n## {}\n", r.process.title);
         let parts = p.report.parts.iter().filter(|q| q.file.is_some() && r.parts.contains(&q.id));
@@ -65,7 +72,9 @@ pub fn pour(p: &PackageReport) -> Option<String> {
         };
         let head = ["part", "master, cm3", "finished, cm3", &format!("{}, g", r.process.material)];
         s += &table(&head, parts.map(row));
-        for line in p.bill.lines.iter().filter(|l| l.what == "metal to melt" && l.material == r.process.material) {
+        for line in
+            p.bill.lines.iter().filter(|l| l.what == "metal to melt" && l.material == r.process.material)
+        {
             s += &format!("\nMetal to melt: {:.1} g of {} ({}).\n", line.total_g, line.material, line.note);
         }
     }

@@ -9,7 +9,8 @@ use crate::package::PackageReport;
 use crate::report::PartReport;
 
 pub fn sheet(p: &PackageReport) -> String {
-    let mut s = format!("# What was checked: {}\n\n## By weavelock, on the files as written\n", p.report.name);
+    let mut s =
+        format!("# What was checked: {}\n\n## By weavelock, on the files as written\n", p.report.name);
     let row = |q: &PartReport| {
         let r = &q.read_back;
         let wall = match (q.file.is_some(), q.wall.and_then(|w| w.thinnest)) {
@@ -28,12 +29,14 @@ pub fn sheet(p: &PackageReport) -> String {
             wall,
         ]
     };
-    let head = ["part", "file", "watertight", "bodies", "handles", "triangles", "volume, mm3", "thinnest wall, mm"];
+    let head =
+        ["part", "file", "watertight", "bodies", "handles", "triangles", "volume, mm3", "thinnest wall, mm"];
     s += &table(&head, p.report.parts.iter().map(row));
     s += "\nEach was read back and is bit for bit what was meant, does not cross itself, and keeps its gaps (ledger.md).\n\n## By other programs\n";
     let rows = others(p);
     s += &if rows.is_empty() {
-        "\n*Not run*: OpenSCAD, PrusaSlicer, ADMesh. `weavelock fab --check` asks those that are installed.\n".to_string()
+        "\n*Not run*: OpenSCAD, PrusaSlicer, ADMesh. `weavelock fab --check` asks those that are installed.\n"
+            .to_string()
     } else {
         table(&["what", "program", "looked at", "answer"], rows)
     };

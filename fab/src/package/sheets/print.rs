@@ -23,7 +23,15 @@ pub fn sheet(p: &PackageReport) -> Option<String> {
         s += &table(&["plate", "bed", "stands on it", "filament"], plates.map(plate));
         let lies = p.layings.iter().filter(|l| r.parts.contains(&l.part));
         s += "\nHow each lies (parts of the same shape alike):\n";
-        let head = ["part", "down is (in the assembly)", "touches the bed, mm2", "overhangs, mm2", "height, mm", "layers", ""];
+        let head = [
+            "part",
+            "down is (in the assembly)",
+            "touches the bed, mm2",
+            "overhangs, mm2",
+            "height, mm",
+            "layers",
+            "",
+        ];
         s += &table(&head, lies.map(|l| laying(l, r.process.print.layer.value)));
     }
     Some(s)

@@ -30,11 +30,17 @@ pub fn sheet(p: &PackageReport) -> String {
 }
 
 const FILES: [(&str, &str); 7] = [
-    ("parts/", "each part in its place in the assembly, at the size of its master (STL, OBJ, 3MF; STL has no unit, so the name says mm)"),
+    (
+        "parts/",
+        "each part in its place in the assembly, at the size of its master (STL, OBJ, 3MF; STL has no unit, so the name says mm)",
+    ),
     ("print/", "plates ready to slice, each part turned and placed on the bed"),
     ("assembly.mm.3mf", "all parts in place as one object, to look at; not there where a clearance is zero"),
     ("coupon/", "what is printed first, to measure machine and material"),
-    ("bill-of-materials.md, ledger.md, checked.md", "masses; how each size came about; what was checked and by which program"),
+    (
+        "bill-of-materials.md, ledger.md, checked.md",
+        "masses; how each size came about; what was checked and by which program",
+    ),
     ("pictures/", "what it should look like"),
     ("package.json", "all of this for a program"),
 ];
@@ -75,7 +81,12 @@ pub fn findings(p: &PackageReport) -> String {
         let at: Vec<String> =
             f.place.at.iter().take(1).map(|v| format!("({:.2}, {:.2}, {:.2})", v.x, v.y, v.z)).collect();
         let place = [f.place.parts.join(", "), at.concat()].join(" ");
-        vec![format!("{:?}", f.severity).to_lowercase(), place.trim().to_string(), f.what.clone(), f.remedy.clone()]
+        vec![
+            format!("{:?}", f.severity).to_lowercase(),
+            place.trim().to_string(),
+            f.what.clone(),
+            f.remedy.clone(),
+        ]
     };
     table(&["", "where (mm, finished assembly)", "what", "what to do"], p.report.findings.iter().map(row))
 }
@@ -95,7 +106,10 @@ pub fn bill(p: &PackageReport) -> String {
     };
     let head = ["what", "material", "number", "cm3 each", "g each", "g all", ""];
     s += &table(&head, p.bill.lines.iter().map(row));
-    let sliced: Vec<String> =
-        p.plates.iter().filter_map(|q| Some(format!("- `{}`: {:.1} g of filament, as sliced\n", q.file, q.grams?))).collect();
+    let sliced: Vec<String> = p
+        .plates
+        .iter()
+        .filter_map(|q| Some(format!("- `{}`: {:.1} g of filament, as sliced\n", q.file, q.grams?)))
+        .collect();
     s + &sliced.concat()
 }
