@@ -112,7 +112,7 @@ fn shards_join_to_the_bytes_of_one_run() {
     let text = fs::read_to_string(&files[0]).expect("a shard");
     let other = parts.join("atlas.changed.jsonl");
     fs::write(&other, text.replacen("\"minimal_repeat\":2", "\"minimal_repeat\":1", 1)).expect("written");
-    let told = atlas::merge(&[parts.clone()], &joined).expect_err("rows differ").to_string();
+    let told = atlas::merge(std::slice::from_ref(&parts), &joined).expect_err("rows differ").to_string();
     assert!(told.contains("differs from that of") && told.contains("atlas.changed.jsonl"), "{told}");
     fs::write(&other, text.replacen("\"most\":2", "\"most\":3", 1)).expect("written");
     let told = atlas::merge(&[parts], &joined).expect_err("tables differ").to_string();

@@ -87,7 +87,7 @@ pub struct GroupAnswer {
     pub elements: Vec<ElementAnswer>,
 }
 
-/// The endless cloth of unit tiles.
+/// The endless weave, its strands uncut.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct ClothAnswer {
     pub group: GroupAnswer,
@@ -228,7 +228,8 @@ pub struct Hands {
     pub tile: Option<Handedness>,
     /// All warp tiles against all weft tiles at phase 0; null for an assembly of meshes.
     pub warp_is: Option<WarpIs>,
-    /// Of the parts in place; where only a weave was asked about, of the endless cloth of its unit tiles.
+    /// Of the parts in place; where only a weave was asked about, of the endless weave, its strands
+    /// uncut.
     pub assembly: Option<Handedness>,
     pub assembly_is: String,
     /// Whether some tile (or part) occurs in both hands.

@@ -1,86 +1,109 @@
-//! Takes the unit tiles of a weave; gives the hand of the endless cloth that they make, and the weave's symmetry group.
+//! Takes the unit tiles of a weave; gives the hand of the endless weave, its strands uncut, and its symmetry group.
 //!
-//! Complete on both sides: a symmetry of the cloth carries the first tile to a translate of some unit tile, and all
-//! isometries between tiles are found on the solids; the group is found on the draft, each class once. A map counts for
-//! the cloth when translations stay translations and every unit tile goes to a tile. Not promised: a name for the hand
-//! where the hands of the tiles cancel.
+//! Complete on both sides for symmetries that carry crossings to crossings: such a one carries the first unit tile to a
+//! stretch as long of some strand, cut between any two crossings, and all isometries to all such stretches are searched
+//! for on the solids; the group is found on the draft, each class under translations once. A map counts when translations
+//! stay translations and every unit tile goes to a stretch. Not promised: a name for the hand where the hands of all
+//! stretches cancel.
 
-use super::answer::{ClothAnswer, ElementAnswer, Evidence, GroupAnswer, HandAnswer, Handedness, Measure};
+use super::answer::{
+    ClothAnswer, ElementAnswer, Evidence, GroupAnswer, HandAnswer, Handedness, Measure, SymmetryAnswer,
+};
 use super::cloth::{Cloth, Shaped};
 use super::draft::{Reach, Symmetry};
 use super::isometry::{self, Found, Search, corner_residual};
 use super::judge::{self, Sense};
 use super::moment;
-use crate::tile::{Lattice, Piece};
+use super::shape::Scale;
+use crate::tile::{Lattice, Piece, TileError};
 use glam::{DAffine3, DVec3};
+use rayon::prelude::*;
 use std::collections::BTreeSet;
 
-/// The cloth of these unit tiles, one for each orbit.
-pub fn cloth(cloth: &Cloth, units: &[Shaped]) -> Option<ClothAnswer> {
-    let first = units.first()?;
-    let elements = cloth.woven().group(&cloth.lattice);
-    let kept: Vec<(Symmetry, bool)> =
-        elements.into_iter().map(|s| (s, keeps_cuts(&s, units, &cloth.lattice))).collect();
-    let searches: Option<Vec<Search>> =
-        units.iter().map(|u| isometry::search(&first.shape, &u.shape, first.scale.rounding)).collect();
+/// Stretches that are looked at; a draft of more is beyond any weave of the paper, and would take minutes.
+const MOST_STRETCHES: usize = 512;
+
+/// The endless weave of these unit tiles, one for each orbit; none for drafts of very many strands.
+pub fn cloth(cloth: &Cloth, units: &[Shaped]) -> Result<Option<ClothAnswer>, TileError> {
+    let pieces = stretches(units, &cloth.lattice);
+    let Some(first) = units.first().filter(|_| pieces.len() <= MOST_STRETCHES) else { return Ok(None) };
+    let targets = cloth.shaped(&pieces)?;
     let draft = &cloth.weave.draft;
     let rectangle = (draft.warps() as i32, draft.wefts() as i32);
-    let endless = Endless { units, lattice: &cloth.lattice, rectangle };
+    let endless = Endless { units, targets: &targets, lattice: &cloth.lattice, rectangle };
+    let elements = cloth.woven().group(&cloth.lattice);
+    let searches: Option<Vec<Search>> =
+        targets.par_iter().map(|t| isometry::search(&first.shape, &t.shape, first.scale.rounding)).collect();
     let search = searches.map(|all| endless.search(&all));
     let resolution = units.iter().map(|u| u.scale.resolution).fold(0.0, f64::max);
-    let draft: Vec<_> = kept
-        .iter()
-        .filter(|k| k.1)
-        .map(|(s, _)| {
-            let residual = endless.carried(&judge::affine(s, cloth.profile.lift), resolution);
-            judge::symmetry_answer(s, Reach::Weave, residual)
-        })
-        .collect();
-    let sense = |proper| judge::sense(proper, search.as_ref(), Some(&draft), first.scale);
+    let told = |s: &Symmetry| {
+        let residual = endless.carried(&judge::affine(s, cloth.profile.lift), resolution);
+        judge::symmetry_answer(s, Reach::Weave, residual)
+    };
+    let drafted: Vec<SymmetryAnswer> = elements.iter().map(told).collect();
+    let hand = hand(&targets, search, drafted, first.scale);
+    Ok(Some(ClothAnswer { group: group(&elements, units, cloth), hand }))
+}
+
+fn hand(targets: &[Shaped], search: Option<Search>, draft: Vec<SymmetryAnswer>, scale: Scale) -> HandAnswer {
+    let sense = |proper| judge::sense(proper, search.as_ref(), Some(&draft), scale);
     let (is, is_not) = (sense(true), sense(false));
     let agreement = judge::agreement([&is, &is_not], search.is_some(), true);
     let (hand, measure, why) = match is_not {
         Sense::Exists => (Handedness::Achiral, None, None),
         Sense::Unclear(why) => (Handedness::Undecided, None, Some(why)),
-        Sense::Absent => named(units),
+        Sense::Absent => named(targets),
     };
-    let search = search.unwrap_or_default();
-    let isometries = search.found.iter().map(judge::isometry_answer).collect();
-    let (tried, within) = (search.tried, search.within);
+    let Search { found, tried, within, .. } = search.unwrap_or_default();
+    let isometries = found.iter().map(judge::isometry_answer).collect();
+    let resolution = scale.resolution;
     let evidence = Evidence { isometries, draft: Some(draft), agreement, tried, within, resolution };
-    let hand = HandAnswer { hand, measure, why, evidence };
-    Some(ClothAnswer { group: group(&kept, &cloth.lattice, cloth), hand })
+    HandAnswer { hand, measure, why, evidence }
+}
+
+/// The unit tiles cut anywhere along their strands, each once under translations.
+fn stretches(units: &[Shaped], lattice: &Lattice) -> Vec<Piece> {
+    let cuts = |unit: &Piece| {
+        (unit.from..unit.to)
+            .map(|c| Piece { from: c, to: c + unit.to - unit.from, ..*unit })
+            .collect::<Vec<_>>()
+    };
+    let all: BTreeSet<Piece> =
+        units.iter().flat_map(|u| cuts(&u.piece)).map(|p| canonical(&p, lattice)).collect();
+    all.into_iter().collect()
+}
+
+fn canonical(piece: &Piece, lattice: &Lattice) -> Piece {
+    let (_, (dx, dy)) = lattice.canonical(piece.start());
+    piece.moved((-dx, -dy))
 }
 
 /// Whether every unit tile goes to a tile of the cloth, as the cuts have it.
 fn keeps_cuts(s: &Symmetry, units: &[Shaped], lattice: &Lattice) -> bool {
-    let canonical = |p: &Piece| {
-        let (_, (dx, dy)) = lattice.canonical(p.start());
-        p.moved((-dx, -dy))
-    };
-    let all: BTreeSet<Piece> = units.iter().map(|u| canonical(&u.piece)).collect();
-    units.iter().all(|u| all.contains(&canonical(&s.piece(&u.piece))))
+    let all: BTreeSet<Piece> = units.iter().map(|u| canonical(&u.piece, lattice)).collect();
+    units.iter().all(|u| all.contains(&canonical(&s.piece(&u.piece), lattice)))
 }
 
-fn group(kept: &[(Symmetry, bool)], lattice: &Lattice, cloth: &Cloth) -> GroupAnswer {
-    let element = |(s, keeps_cuts): &(Symmetry, bool)| ElementAnswer {
+fn group(elements: &[Symmetry], units: &[Shaped], cloth: &Cloth) -> GroupAnswer {
+    let element = |s: &Symmetry| ElementAnswer {
         proper: s.is_proper(),
         exchange: s.exchange,
         turned_over: s.upside_down,
-        keeps_cuts: *keeps_cuts,
+        keeps_cuts: keeps_cuts(s, units, &cloth.lattice),
         map: s.text(),
     };
     let draft = &cloth.weave.draft;
     GroupAnswer {
-        translations: lattice.shifts.iter().map(|&(x, y)| [x, y]).collect(),
+        translations: cloth.lattice.shifts.iter().map(|&(x, y)| [x, y]).collect(),
         rectangle: [draft.warps() as i32, draft.wefts() as i32],
-        elements: kept.iter().map(element).collect(),
+        elements: elements.iter().map(element).collect(),
     }
 }
 
-/// All translates of the unit tiles.
+/// The weave as its unit tiles, and all stretches that one may go to; with all their translates.
 struct Endless<'a> {
     units: &'a [Shaped],
+    targets: &'a [Shaped],
     lattice: &'a Lattice,
     /// Warps and wefts of the least rectangle.
     rectangle: (i32, i32),
@@ -108,7 +131,7 @@ impl Endless<'_> {
         let shifts = self.lattice.shifts.iter().copied().chain([(wide, 0), (0, high)]);
         shifts.into_iter().try_for_each(|s| self.translation(map, s))?;
         self.units.iter().try_fold(0.0, |worst: f64, unit| {
-            let residual = self.units.iter().find_map(|to| self.meets(unit, to, map, within))?;
+            let residual = self.targets.iter().find_map(|to| self.meets(unit, to, map, within))?;
             Some(worst.max(residual))
         })
     }
@@ -130,12 +153,12 @@ impl Endless<'_> {
     }
 }
 
-/// The hand of the first pseudo-scalar whose sum over the unit tiles is more than their errors.
-fn named(units: &[Shaped]) -> (Handedness, Option<Measure>, Option<String>) {
+/// The hand of the first pseudo-scalar whose sum over all stretches is more than their errors.
+fn named(stretches: &[Shaped]) -> (Handedness, Option<Measure>, Option<String>) {
     let mut sums = [0.0; 3];
     let mut names = [""; 3];
     let mut error = 0.0;
-    for unit in units {
+    for unit in stretches {
         let (scalars, round_off) = judge::scalars(&unit.shape, unit.scale);
         for (k, p) in scalars.iter().enumerate() {
             sums[k] += if p.size > 0.0 { p.value / p.size } else { 0.0 };
@@ -146,11 +169,11 @@ fn named(units: &[Shaped]) -> (Handedness, Option<Measure>, Option<String>) {
     match (0..3).find(|&k| sums[k].abs() > error) {
         Some(k) => {
             let hand = if sums[k] > 0.0 { Handedness::Right } else { Handedness::Left };
-            let integrand = format!("{}, summed over the unit tiles", names[k]);
+            let integrand = format!("{}, summed over all stretches of a period", names[k]);
             (hand, Some(Measure { integrand, value: sums[k], round_off: error }), None)
         }
         None => {
-            let why = "chiral, but the hands of its tiles cancel, so it has no name".to_string();
+            let why = "chiral, but the hands of its stretches cancel, so it has no name".to_string();
             (Handedness::Undecided, None, Some(why))
         }
     }

@@ -40,7 +40,7 @@ pub enum HandsError {
     Tile(#[from] TileError),
 }
 
-/// The hands of the unit tiles of a weave, and of the endless cloth of them.
+/// The hands of the unit tiles of a weave, and of the weave itself.
 pub fn of_weave(weave: &Weave, profile: &ProfileSpec) -> Result<Hands, HandsError> {
     let cloth = Cloth::new(weave, profile)?;
     let shaped = cloth.shaped(&cloth.units())?;
@@ -59,14 +59,14 @@ pub fn of_weave(weave: &Weave, profile: &ProfileSpec) -> Result<Hands, HandsErro
     let names: Vec<Vec<String>> = shaped.iter().map(|s| vec![s.piece.strand.to_string()]).collect();
     let hands: Vec<Handedness> = tiles.iter().map(|t| t.hand.hand).collect();
     let groups = kin::groups(&names, &hands, |i, j| cloth.compare(&shaped[i], &shaped[j]));
-    let whole = fabric::cloth(&cloth, &shaped);
+    let whole = fabric::cloth(&cloth, &shaped)?;
     let told = tiles.iter().map(|t| &t.hand.evidence).chain(strands.iter().map(|p| &p.evidence));
     let told = told.chain(whole.iter().map(|c| &c.hand.evidence)).map(|e| e.agreement);
     Ok(Hands {
         tile: tiles.first().map(|t| t.hand.hand),
         warp_is: Some(warp_is),
         assembly: whole.as_ref().map(|c| c.hand.hand),
-        assembly_is: "endless cloth of unit tiles".into(),
+        assembly_is: "endless weave, strands uncut".into(),
         both_hands: Some(groups.both_hands()),
         agreement: told.fold(groups.agreement, Agreement::max),
         findings: findings(&tiles, &strands, whole.as_ref()),
@@ -89,7 +89,7 @@ fn findings(
 ) -> Vec<FindingAnswer> {
     let of_tiles = tiles.iter().map(|t| (format!("tile of {}", t.strand), &t.hand.why));
     let of_pairs = strands.iter().map(|p| (format!("{} against {}", p.warp, p.weft), &p.why));
-    let of_cloth = cloth.map(|c| ("endless cloth".to_string(), &c.hand.why));
+    let of_cloth = cloth.map(|c| ("endless weave".to_string(), &c.hand.why));
     let all = of_tiles.chain(of_pairs).chain(of_cloth);
     all.filter_map(|(at, why)| Some(FindingAnswer { at, what: why.clone()? })).collect()
 }
