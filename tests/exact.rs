@@ -254,7 +254,7 @@ fn facets_come_nearer_to_the_true_surfaces_with_more_samples() {
         let joined = joined(&window([1, 1, 1], samples, 2, 2));
         let a = answered(&joined, Path::new("test.toml"), &window([1, 1, 1], samples, 2, 2));
         println!(
-            "{samples}: {} rad, {:?} crossings, {:?}",
+            "{samples}: {:?} rad, {:?} crossings, {:?}",
             a.sampling.chord_error, a.sampling.chord_distance, a.sampling.rigid
         );
         a.sampling.chord_distance.expect("a distance")

@@ -42,8 +42,8 @@ pub fn told(placed: &Placed, check: &Check, levels: Option<Refined>) -> Told {
 fn with_sampling(mut chapter: Chapter, a: &CheckAnswer) -> Chapter {
     let mut fact = |name: &str, value: String| chapter.facts.push((name.into(), value));
     fact("margin", margin(&a.sampling.rigid));
-    if a.sampling.chord_error > 0.0 {
-        let error = chapters::scientific(a.sampling.chord_error);
+    if let Some(error) = a.sampling.chord_error.filter(|e| *e > 0.0) {
+        let error = chapters::scientific(error);
         fact("facets' own error", format!("{error} rad at most, against the true curved surfaces"));
     }
     fact("beyond the samples", beyond(a.sampling.rigid.beyond_sampling, &a.sampling.rigid.beyond_why));
@@ -60,7 +60,7 @@ fn beyond(word: Beyond, why: &str) -> String {
 }
 
 fn margin(s: &Standing) -> String {
-    let Some(m) = &s.margin else { return "none: nothing was decided".into() };
+    let Some(m) = &s.margin else { return "not computed".into() };
     let lower = m.lower.map_or("lower bound not computed".into(), |l| {
         format!("every normal may be turned by {} rad (proven)", chapters::scientific(l))
     });
@@ -78,7 +78,7 @@ fn levels(refine: &Refined) -> Table {
             l.translation.clone(),
             chapters::thousands(l.rows),
             margin,
-            chapters::scientific(l.chord_error),
+            l.chord_error.map_or("-".into(), chapters::scientific),
             word.into(),
         ]
     };

@@ -23,8 +23,10 @@ use glam::DVec3;
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 
-/// More unknowns than this are not asked: the factor is dense.
-pub const MOST_UNKNOWNS: usize = 1500;
+/// More unknowns than this are not asked: the factor is dense. Nor where unknowns times rows that carry a force are more
+/// than this: for every unknown all rows are summed.
+const MOST_UNKNOWNS: usize = 1500;
+const MOST_WORK: usize = 40_000_000;
 
 /// Linear programs that tighten a bound, and the unknowns up to which they are worth it: a tenth of a second or so.
 pub const PROGRAMS: usize = 16;
@@ -86,7 +88,7 @@ pub fn lock(problem: &Weighted, stress: &Stress, programs: usize) -> Option<Boun
     if n == 0 {
         return Some(Bound { lower: f64::INFINITY, near: Vec::new() });
     }
-    if n > MOST_UNKNOWNS {
+    if n > MOST_UNKNOWNS || n * stress.forces.len() > MOST_WORK {
         return None;
     }
     let (some, size) = problem.carrying(&stress.forces)?;

@@ -56,14 +56,30 @@ pub struct Sampling {
     #[serde(flatten)]
     pub rigid: Standing,
     pub translation_standing: Standing,
-    /// Largest angle between a facet's normal and the true surface's, at its corners and middle, radians; 0 for meshes.
-    pub chord_error: f64,
+    /// Largest angle between a facet's normal and the true surface's, near its corners and at its middle, radians; 0 for
+    /// meshes; null where there are too many contacts to measure.
+    pub chord_error: Option<f64>,
     /// Largest distance there of a facet from the true surface, model units; null where a facet is near none.
     pub chord_distance: Option<f64>,
 }
 
+/// Contact patches up to which margins and errors are measured: some seconds.
+pub const MOST_PATCHES: usize = 100_000;
+
+fn not_measured(joined: &Joined) -> Standing {
+    let (beyond_sampling, beyond_why) = match &joined.origin {
+        Origin::Meshes => as_given(),
+        Origin::Woven(_) => (Beyond::Unproven, format!("not measured for more than {MOST_PATCHES} contacts")),
+    };
+    Standing { margin: None, beyond_sampling, beyond_why }
+}
+
 /// How the verdicts of a check stand.
 pub fn standing(joined: &Joined, check: &Check) -> Sampling {
+    if joined.patches.len() > MOST_PATCHES {
+        let (rigid, translation_standing) = (not_measured(joined), not_measured(joined));
+        return Sampling { rigid, translation_standing, chord_error: None, chord_distance: None };
+    }
     let still: Vec<PartIx> = check.held.iter().copied().chain(check.fixed).collect();
     let ground = Ground::new(joined, still);
     let largest = match joined.origin {
@@ -73,7 +89,7 @@ pub fn standing(joined: &Joined, check: &Check) -> Sampling {
     Sampling {
         rigid: ground.standing(Freedom::Rigid, &check.rigid),
         translation_standing: ground.standing(Freedom::Translation, &check.translation),
-        chord_error: largest.angle,
+        chord_error: Some(largest.angle),
         chord_distance: largest.distance.is_finite().then_some(largest.distance),
     }
 }

@@ -31,6 +31,9 @@ pub const ROW_ROUND_OFF: f64 = 8.0 * UNIT;
 /// thousands. What a forger makes of a certificate is not one, even where the lock itself is true.
 const BALANCE_ROUND_OFF: f64 = 4096.0 * UNIT;
 
+/// Rows that are off by more are not asked about, so that a product of two changes stays small beside either.
+const MOST_OFF: f64 = 1.0 / 1024.0;
+
 /// Half a unit in the last place of 1.
 const UNIT: f64 = f64::EPSILON / 2.0;
 
@@ -113,6 +116,7 @@ fn judged(stack: &Stack, singular: f64, forces: &[Force], count: usize) -> Resul
              reaches {ROW_ROUND_OFF:.1e}"
         ));
     }
+    let bound = bound.min(MOST_OFF);
     let least = forces.iter().map(|f| f.size).fold(f64::INFINITY, f64::min) * (1.0 - share - f64::EPSILON);
     let how = format!(
         "exact forces in balance exist within {share:.1e} (relative) of those written; rank {count} of {count}; \
@@ -258,7 +262,7 @@ fn entries(f: &Force, frames: &[Option<Frame>], width: usize, size: f64) -> Vec<
             } else {
                 let (i, j) = ((k + 1) % 3, (k + 2) % 3);
                 let terms = (arm[i] * f.n[j]).abs() + (arm[j] * f.n[i]).abs();
-                let off = arm[i].abs() + arm[j].abs() + far * (f.n[i].abs() + f.n[j].abs());
+                let off = arm[i].abs() + arm[j].abs() + far * (f.n[i].abs() + f.n[j].abs() + 2.0 * MOST_OFF);
                 entry(by * (arm[i] * f.n[j] - arm[j] * f.n[i]), by * terms, 8.0, by * off * UP)
             });
         }
