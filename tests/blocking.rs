@@ -27,7 +27,6 @@ struct Cubes {
     owner: BTreeMap<Voxel, usize>,
     asm: Assembly,
     patches: Vec<Patch>,
-    by: DQuat,
 }
 
 fn cubes(owner: BTreeMap<Voxel, usize>, held: &[bool], by: DQuat) -> Cubes {
@@ -41,7 +40,7 @@ fn cubes(owner: BTreeMap<Voxel, usize>, held: &[bool], by: DQuat) -> Cubes {
         p.normal = by * p.normal;
         p.corners.iter_mut().for_each(|c| *c = by * *c);
     }
-    Cubes { owner, asm, patches, by }
+    Cubes { owner, asm, patches }
 }
 
 fn cube(v: Voxel, by: DQuat) -> Cell {
@@ -62,7 +61,7 @@ fn random_cubes(seed: u64, by: DQuat) -> Cubes {
             owner.insert(at, dice.below(count));
         }
     }
-    (0..count).for_each(|p| drop(owner.insert([p as i32, 3, 0], p)));
+    owner.extend((0..count).map(|p| ([p as i32, 3, 0], p)));
     cubes(owner, &vec![false; count], by)
 }
 
@@ -269,7 +268,6 @@ fn read_graphml(bytes: &[u8]) -> Vec<(String, bool, Vec<Vec<String>>, Vec<[Strin
     let text = std::str::from_utf8(bytes).expect("UTF-8");
     let mut reader = quick_xml::Reader::from_str(text);
     let mut out: Vec<(String, bool, Vec<Vec<String>>, Vec<[String; 2]>)> = Vec::new();
-    let mut inside = String::new();
     loop {
         match reader.read_event().expect("well-formed XML") {
             Event::Start(e) | Event::Empty(e) => {
@@ -277,7 +275,7 @@ fn read_graphml(bytes: &[u8]) -> Vec<(String, bool, Vec<Vec<String>>, Vec<[Strin
                     let a = e.try_get_attribute(key).expect("attributes")?;
                     Some(quick_xml::escape::unescape(&a.value).expect("entities").into_owned())
                 };
-                inside = e.name().as_ref().to_string();
+                let inside = e.name().as_ref().to_string();
                 match inside.as_str() {
                     "graph" => out.push((
                         get("id").expect("id"),
