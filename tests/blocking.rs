@@ -174,12 +174,11 @@ fn turning_changes_no_count() {
 
 /// The laws of `blocking::ndbg`: what blocks at an edge blocks beside it; the opposite direction turns all arcs round.
 fn laws(found: &Ndbg, about: &str) {
-    for &(x, y) in &found.beside {
-        let (x, y) = (&found.regions[x], &found.regions[y]);
-        let (low, high) = if x.dimension < y.dimension { (x, y) } else { (y, x) };
-        if low.dimension < high.dimension {
-            assert!(arcs(found, low.graph).is_subset(&arcs(found, high.graph)), "{about}: {low:?} {high:?}");
-        }
+    let of = |kind: usize, cell: usize| arcs(found, found.regions[found.region_of[kind][cell]].graph);
+    for (k, e) in found.arrangement.edges.iter().enumerate() {
+        let own = of(1, k);
+        assert!([e.left, e.right].iter().all(|&f| own.is_subset(&of(0, f))), "{about}: {e:?}");
+        assert!([e.from, e.to].iter().all(|&v| of(2, v).is_subset(&own)), "{about}: {e:?}");
     }
     let known: BTreeSet<Arcs> = (0..found.graphs.len()).map(|k| arcs(found, k)).collect();
     for graph in &known {
