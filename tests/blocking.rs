@@ -27,7 +27,6 @@ struct Cubes {
     owner: BTreeMap<Voxel, usize>,
     asm: Assembly,
     patches: Vec<Patch>,
-    by: DQuat,
 }
 
 fn cubes(owner: BTreeMap<Voxel, usize>, held: &[bool], by: DQuat) -> Cubes {
@@ -41,7 +40,7 @@ fn cubes(owner: BTreeMap<Voxel, usize>, held: &[bool], by: DQuat) -> Cubes {
         p.normal = by * p.normal;
         p.corners.iter_mut().for_each(|c| *c = by * *c);
     }
-    Cubes { owner, asm, patches, by }
+    Cubes { owner, asm, patches }
 }
 
 fn cube(v: Voxel, by: DQuat) -> Cell {
@@ -62,7 +61,7 @@ fn random_cubes(seed: u64, by: DQuat) -> Cubes {
             owner.insert(at, dice.below(count));
         }
     }
-    (0..count).for_each(|p| drop(owner.insert([p as i32, 3, 0], p)));
+    owner.extend((0..count).map(|p| ([p as i32, 3, 0], p)));
     cubes(owner, &vec![false; count], by)
 }
 
@@ -175,12 +174,11 @@ fn turning_changes_no_count() {
 
 /// The laws of `blocking::ndbg`: what blocks at an edge blocks beside it; the opposite direction turns all arcs round.
 fn laws(found: &Ndbg, about: &str) {
-    for &(x, y) in &found.beside {
-        let (x, y) = (&found.regions[x], &found.regions[y]);
-        let (low, high) = if x.dimension < y.dimension { (x, y) } else { (y, x) };
-        if low.dimension < high.dimension {
-            assert!(arcs(found, low.graph).is_subset(&arcs(found, high.graph)), "{about}: {low:?} {high:?}");
-        }
+    let of = |kind: usize, cell: usize| arcs(found, found.regions[found.region_of[kind][cell]].graph);
+    for (k, e) in found.arrangement.edges.iter().enumerate() {
+        let own = of(1, k);
+        assert!([e.left, e.right].iter().all(|&f| own.is_subset(&of(0, f))), "{about}: {e:?}");
+        assert!([e.from, e.to].iter().all(|&v| of(2, v).is_subset(&own)), "{about}: {e:?}");
     }
     let known: BTreeSet<Arcs> = (0..found.graphs.len()).map(|k| arcs(found, k)).collect();
     for graph in &known {
@@ -269,7 +267,6 @@ fn read_graphml(bytes: &[u8]) -> Vec<(String, bool, Vec<Vec<String>>, Vec<[Strin
     let text = std::str::from_utf8(bytes).expect("UTF-8");
     let mut reader = quick_xml::Reader::from_str(text);
     let mut out: Vec<(String, bool, Vec<Vec<String>>, Vec<[String; 2]>)> = Vec::new();
-    let mut inside = String::new();
     loop {
         match reader.read_event().expect("well-formed XML") {
             Event::Start(e) | Event::Empty(e) => {
@@ -277,7 +274,7 @@ fn read_graphml(bytes: &[u8]) -> Vec<(String, bool, Vec<Vec<String>>, Vec<[Strin
                     let a = e.try_get_attribute(key).expect("attributes")?;
                     Some(quick_xml::escape::unescape(&a.value).expect("entities").into_owned())
                 };
-                inside = e.name().as_ref().to_string();
+                let inside = e.name().as_ref().to_string();
                 match inside.as_str() {
                     "graph" => out.push((
                         get("id").expect("id"),

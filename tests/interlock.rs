@@ -103,7 +103,7 @@ fn all_agree(seeds: std::ops::Range<u64>) {
         compare(&random_tetrahedra(&mut Dice::new(seed)), &format!("tetrahedra {seed}"), &mut tally);
     }
     println!("{tally:?}");
-    assert!(tally.doubt * 20 <= many && tally.groups * 20 > many && tally.cores * 20 > many, "{tally:?}");
+    assert!(tally.doubt * 20 <= many && tally.groups > 0 && tally.cores * 10 > many, "{tally:?}");
 }
 
 #[test]
