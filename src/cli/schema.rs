@@ -4,6 +4,7 @@
 
 use super::told::{News, Told, Trouble};
 use crate::chirality::answer::Hands;
+use crate::report::answer::fab::{FabAnswer, ProcessesAnswer};
 use crate::report::answer::{CheckAnswer, FlexAnswer, PlanAnswer, RepeatsAnswer, WeaveAnswer};
 use crate::report::content::{Chapter, Tone};
 use crate::spec::shape::SpecFile;
@@ -21,6 +22,8 @@ pub fn schema() -> Result<Told, Trouble> {
         ("weave", schema_for!(WeaveAnswer)),
         ("chirality", schema_for!(Hands)),
         ("verify", schema_for!(Verified)),
+        ("fab", schema_for!(FabAnswer)),
+        ("processes", schema_for!(ProcessesAnswer)),
     ]);
     let pretty = serde_json::to_string_pretty(&all).unwrap_or_default();
     let figure = pretty.lines().map(str::to_string).collect();

@@ -3,6 +3,7 @@
 //! Every answer carries the text of its spec, so that it can be checked without the file, and a checksum against
 //! accidental change. Not promised: that a checksum stops a forger; `verify` re-does the mathematics.
 
+pub mod fab;
 mod flex;
 pub mod repeats;
 mod weave;
