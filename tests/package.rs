@@ -104,6 +104,22 @@ fn a_package_holds_what_a_fabricator_needs_and_lists_it() {
 }
 
 #[test]
+fn the_schema_has_just_the_keys_of_the_answers() {
+    let at = room("schema");
+    let run = |args: &[&str]| -> Value { serde_json::from_slice(&ran(args, &at).stdout).expect("JSON") };
+    let schema = run(&["schema", "--json"]);
+    let keys = |v: &Value| v.as_object().expect("an object").keys().cloned().collect::<Vec<_>>();
+    let fab = run(&["fab", &plain(), "--out", "p", "--json"]);
+    assert_eq!(keys(&schema["fab"]["properties"]), keys(&fab));
+    for (name, list) in
+        [("PartAnswer", "parts"), ("GapAnswer", "gaps"), ("PlateAnswer", "plates"), ("RouteAnswer", "routes")]
+    {
+        assert_eq!(keys(&schema["fab"]["$defs"][name]["properties"]), keys(&fab[list][0]), "{name}");
+    }
+    assert_eq!(keys(&schema["processes"]["properties"]), keys(&run(&["processes", "--json"])));
+}
+
+#[test]
 fn plates_hold_every_part_on_the_bed_in_the_positive_octant_without_double_vertices() {
     let at = room("plates");
     let out = ran(&["fab", &plain(), "--out", "p", "--json", "--bed", "90 x 100 x 60 mm"], &at);

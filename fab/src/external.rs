@@ -20,7 +20,7 @@ pub(crate) fn check_all(report: &mut Report, pieces: &[Piece], programs: &Progra
         let Some(file) = part.file.as_ref().map(Path::new) else { return vec![] };
         vec![
             volume(&scad, programs, file, part, high(piece)),
-            slicer::part(&programs.slicer, &names.0, file),
+            slicer::bodies(&programs.slicer, &names.0, file, part.read_back.shells()),
             admesh::part(&programs.admesh, &names.1, file),
         ]
     };

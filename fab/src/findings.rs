@@ -79,10 +79,9 @@ pub fn of_mesh(id: &str, master: &Mesh, scale: &Scale) -> Vec<Finding> {
             "the clearance makes the surface cross itself; nothing is written for the part".to_string();
         found.push(error(id, vec![scale.down(c.at)], what, CROSSING));
     }
-    let topology = master.topology();
-    if topology.bodies != 1 {
-        let what =
-            format!("the part as made is {} bodies, not one; nothing is written for it", topology.bodies);
+    let solids = master.shells().iter().filter(|v| **v > 0.0).count();
+    if solids != 1 {
+        let what = format!("the part as made is {solids} bodies, not one; nothing is written for it");
         found.push(error(id, vec![], what, BODIES));
     }
     found
@@ -105,6 +104,7 @@ pub fn collect(report: &mut Report) {
     found.extend(report.routes.iter().filter_map(|r| of_shrinkage(report, r)));
     found.extend(report.routes.iter().filter_map(of_no_clearance));
     found.extend(report.parts.iter().filter(|p| p.same_as.is_none()).flat_map(of_walls));
+    found.extend(report.parts.iter().filter_map(of_hollows));
     report.findings.extend(found);
     report.findings.sort_by_key(|f| std::cmp::Reverse(f.severity));
     let mut seen = std::collections::BTreeSet::new();
@@ -183,6 +183,19 @@ fn of_no_clearance(route: &RouteReport) -> Option<Finding> {
         place: Place { parts: route.parts.clone(), at: vec![] },
         what,
         remedy,
+    })
+}
+
+/// Hollows that nothing can be taken out of.
+fn of_hollows(part: &PartReport) -> Option<Finding> {
+    let hollows = part.read_back.hollows.filter(|h| *h > 0)?;
+    Some(Finding {
+        severity: Severity::Warning,
+        place: Place { parts: vec![part.id.clone()], at: vec![] },
+        what: format!(
+            "{hollows} closed hollows: supports, resin and wax stay inside, and a casting needs a core"
+        ),
+        remedy: "split the part, or open the hollow".into(),
     })
 }
 

@@ -107,6 +107,31 @@ impl Mesh {
         Topology { bodies, genus: bodies as i64 - (v - f / 2) / 2 }
     }
 
+    /// Signed volume of each connected piece of surface, mm3, in the order of their first triangles: positive around
+    /// material, negative around a hollow.
+    pub fn shells(&self) -> Vec<f64> {
+        let mut root: Vec<usize> = (0..self.vertices.len()).collect();
+        for t in &self.triangles {
+            for v in &t[1..] {
+                let (a, b) = (find(&mut root, t[0] as usize), find(&mut root, *v as usize));
+                root[b] = a;
+            }
+        }
+        let (lo, hi) = self.bounds();
+        let o = (lo + hi) / 2.0;
+        let mut number: BTreeMap<usize, usize> = BTreeMap::new();
+        let mut volumes: Vec<f64> = Vec::new();
+        for (t, tri) in self.triangles.iter().enumerate() {
+            let k = *number.entry(find(&mut root, tri[0] as usize)).or_insert_with(|| {
+                volumes.push(0.0);
+                volumes.len() - 1
+            });
+            let [a, b, c] = self.corners(t).map(|p| p - o);
+            volumes[k] += a.dot(b.cross(c)) / 6.0;
+        }
+        volumes
+    }
+
     /// The same mesh with every vertex moved.
     pub fn map(&self, f: impl Fn(DVec3) -> DVec3) -> Mesh {
         Mesh { vertices: self.vertices.iter().map(|&v| f(v)).collect(), triangles: self.triangles.clone() }
@@ -147,6 +172,16 @@ pub(crate) mod tests {
         assert_eq!(m.closure(), Closure::Closed);
         assert_eq!(m.topology(), Topology { bodies: 1, genus: 0 });
         assert!((m.volume() - 6.0).abs() < 1e-9 && (m.area() - 22.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn a_hollow_box_is_one_solid_with_a_hollow() {
+        let mut m = cuboid(DVec3::ZERO, DVec3::splat(3.0));
+        let inner = cuboid(DVec3::ONE, DVec3::splat(2.0));
+        m.vertices.extend(&inner.vertices);
+        m.triangles.extend(inner.triangles.iter().map(|t| [t[0] + 8, t[2] + 8, t[1] + 8]));
+        let shells = m.shells();
+        assert!((shells[0] - 27.0).abs() < 1e-12 && (shells[1] + 1.0).abs() < 1e-12, "{shells:?}");
     }
 
     #[test]

@@ -46,7 +46,9 @@ impl Finding {
 pub struct ReadBack {
     pub volume_mm3: Option<f64>,
     pub watertight: Option<bool>,
+    /// Pieces of surface around material, and around hollows inside it.
     pub bodies: Option<usize>,
+    pub hollows: Option<usize>,
     pub genus: Option<i64>,
     pub triangles: Option<usize>,
     /// Bounding box, mm.
@@ -57,15 +59,22 @@ pub struct ReadBack {
 impl ReadBack {
     pub fn of(mesh: &Mesh) -> ReadBack {
         let (topology, (low, high)) = (mesh.topology(), mesh.bounds());
+        let bodies = mesh.shells().iter().filter(|v| **v > 0.0).count();
         ReadBack {
             volume_mm3: Some(mesh.volume()),
             watertight: Some(mesh.closure() == Closure::Closed),
-            bodies: Some(topology.bodies),
+            bodies: Some(bodies),
+            hollows: Some(topology.bodies - bodies),
             genus: Some(topology.genus),
             triangles: Some(mesh.triangles.len()),
             low: Some(low),
             high: Some(high),
         }
+    }
+
+    /// Pieces of surface in all: what a slicer counts as parts.
+    pub fn shells(&self) -> usize {
+        self.bodies.unwrap_or(0) + self.hollows.unwrap_or(0)
     }
 }
 

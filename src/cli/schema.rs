@@ -5,6 +5,7 @@
 use super::atlas::AtlasAnswer;
 use super::told::{News, Told, Trouble};
 use crate::chirality::answer::Hands;
+use crate::report::answer::fab::{FabAnswer, ProcessesAnswer};
 use crate::report::answer::{
     BlockingAnswer, CheckAnswer, FlexAnswer, PlanAnswer, RepeatsAnswer, WeaveAnswer,
 };
@@ -26,6 +27,8 @@ pub fn schema() -> Result<Told, Trouble> {
         ("chirality", schema_for!(Hands)),
         ("atlas", schema_for!(AtlasAnswer)),
         ("verify", schema_for!(Verified)),
+        ("fab", schema_for!(FabAnswer)),
+        ("processes", schema_for!(ProcessesAnswer)),
     ]);
     let pretty = serde_json::to_string_pretty(&all).unwrap_or_default();
     let figure = pretty.lines().map(str::to_string).collect();

@@ -4,6 +4,7 @@
 //! accidental change. Not promised: that a checksum stops a forger; `verify` re-does the mathematics.
 
 mod blocking;
+pub mod fab;
 mod flex;
 mod interlock;
 pub mod repeats;
