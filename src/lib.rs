@@ -3,7 +3,7 @@
 //! The flow, one way:
 //!
 //! ```text
-//! weave -> profile -> sites -> tile -> assembly -> contact -> { blocking, locking, sequence, repeats, flex, chirality } -> fab -> report
+//! weave -> profile -> sites -> tile -> assembly -> contact -> { blocking, locking, sequence, sampling, repeats, flex, chirality } -> fab -> report
 //! ```
 
 pub mod assembly;
@@ -16,10 +16,13 @@ pub mod fabricate;
 pub mod fault;
 pub mod flex;
 pub mod input;
+pub mod interlock;
 pub mod locking;
+pub mod made;
 pub mod profile;
 pub mod repeats;
 pub mod report;
+pub mod sampling;
 pub mod sequence;
 pub mod sites;
 pub mod solid;

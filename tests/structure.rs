@@ -6,7 +6,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 /// Each module of `src` and the modules that it may use. What stands in one line never uses its neighbours there.
-const FLOW: [&[&str]; 16] = [
+const FLOW: [&[&str]; 17] = [
     &["fault", "solid"],
     &["input"],
     &["weave"],
@@ -18,7 +18,8 @@ const FLOW: [&[&str]; 16] = [
     &["contact"],
     &["blocking", "locking"],
     &["sequence"],
-    &["repeats", "flex", "chirality", "fabricate"],
+    &["made"],
+    &["repeats", "flex", "chirality", "fabricate", "sampling", "interlock"],
     &["report"],
     &["verify", "atlas"],
     &["cli"],

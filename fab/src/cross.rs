@@ -55,7 +55,7 @@ pub fn encloses(mesh: &Mesh, p: DVec3) -> bool {
     turns.abs() > 0.5
 }
 
-fn pairs(a: (&Mesh, &Bvh), b: (&Mesh, &Bvh), f: &mut impl FnMut(u32, u32)) {
+pub(crate) fn pairs(a: (&Mesh, &Bvh), b: (&Mesh, &Bvh), f: &mut impl FnMut(u32, u32)) {
     let mut todo = if a.1.nodes.is_empty() || b.1.nodes.is_empty() { vec![] } else { vec![(0, 0)] };
     while let Some((i, j)) = todo.pop() {
         if a.1.boxes[i].distance_squared(&b.1.boxes[j]) > 0.0 {

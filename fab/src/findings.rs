@@ -6,13 +6,16 @@ use crate::ledger::Scale;
 use crate::make::crossings;
 use crate::mesh::{Closure, Mesh};
 use crate::offset::{Failure, Why};
-use crate::report::{Finding, Place, Report, Severity};
+use crate::report::{Finding, PartReport, Place, Report, RouteReport, Severity};
+use crate::shave::NotShaved;
 use glam::DVec3;
 
 const SMALLER: &str = "take a smaller clearance, a larger pitch, or a shape with thicker walls there";
 const CROSSING: &str =
     "take a smaller clearance, and look whether the solid that came in crosses itself there already";
 const BODIES: &str = "take a smaller clearance; where the solid that came in has several bodies already, give each an id of its own";
+const PINCHED: &str =
+    "move the bodies apart or let them overlap; where both sides of the edge are contact, give a clearance";
 const OURS: &str = "this is a fault of the program: please report it with the input";
 
 fn error(id: &str, at: Vec<DVec3>, what: String, remedy: &str) -> Finding {
@@ -31,13 +34,44 @@ pub fn of_failure(id: &str, failure: &Failure) -> Finding {
     error(id, vec![failure.at], format!("{what}; nothing is written for the part"), SMALLER)
 }
 
+/// That a part was carved, and what the exact move failed of.
+pub fn of_carving(id: &str, failed: &[Finding]) -> Finding {
+    let why = failed.first().map_or(String::new(), |f| format!(" ({})", f.what));
+    let place = Place {
+        parts: vec![id.to_string()],
+        at: failed.iter().flat_map(|f| f.place.at.clone()).take(1).collect(),
+    };
+    Finding {
+        severity: Severity::Note,
+        place,
+        what: format!(
+            "moving its faces exactly failed{why}; it was carved by blocks instead, and has more air at edges and corners"
+        ),
+        remedy: "nothing, where the gaps that were measured do; else a smaller clearance".into(),
+    }
+}
+
+/// That a print face stays as it was.
+pub fn of_shaving(id: &str, why: &NotShaved) -> Finding {
+    Finding {
+        severity: Severity::Warning,
+        place: Place { parts: vec![id.to_string()], at: vec![] },
+        what: format!("its print face was left as it is: {why}"),
+        remedy: "flatten it with --flatten first, or compensate in the slicer".into(),
+    }
+}
+
 /// What keeps a mesh on the master from being written.
 pub fn of_mesh(id: &str, master: &Mesh, scale: &Scale) -> Vec<Finding> {
     let mut found = Vec::new();
     if let Closure::Open { edges, at } = master.closure() {
-        let what =
-            format!("{edges} edges are not between two opposite triangles; nothing is written for the part");
-        found.push(error(id, vec![scale.down(at)], what, SMALLER));
+        let pinched = master.is_pinched();
+        let what = if pinched {
+            "the surface meets itself in an edge, where the part would hang together by nothing; it is not written".to_string()
+        } else {
+            format!("{edges} edges are not between two opposite triangles; nothing is written for the part")
+        };
+        found.push(error(id, vec![scale.down(at)], what, if pinched { PINCHED } else { SMALLER }));
         return found;
     }
     if let Some(c) = crossings(master).first() {
@@ -60,7 +94,7 @@ pub fn of_copy(id: &str, file: &str, same: bool) -> Option<Finding> {
 }
 
 /// Adds to the report's findings what its gaps, checks and figures say.
-pub fn collect(report: &mut Report, scale: &Scale) {
+pub fn collect(report: &mut Report) {
     let mut found: Vec<Finding> = report.gaps.iter().filter_map(of_gap).collect();
     for part in &report.parts {
         found.extend(part.checks.iter().filter_map(|c| of_check(c, std::slice::from_ref(&part.id))));
@@ -68,15 +102,9 @@ pub fn collect(report: &mut Report, scale: &Scale) {
     for pair in &report.pair_checks {
         found.extend(of_check(&pair.check, &[pair.a.clone(), pair.b.clone()]));
     }
-    found.extend(of_shrinkage(report, scale));
-    found.extend(of_no_clearance(report));
-    let note = "walls are not measured against the least wall of the process yet".to_string();
-    found.push(Finding {
-        severity: Severity::Note,
-        place: Place::default(),
-        what: note,
-        remedy: "look at thin lips in the slicer's preview".into(),
-    });
+    found.extend(report.routes.iter().filter_map(|r| of_shrinkage(report, r)));
+    found.extend(report.routes.iter().filter_map(of_no_clearance));
+    found.extend(report.parts.iter().filter(|p| p.same_as.is_none()).flat_map(of_walls));
     report.findings.extend(found);
     report.findings.sort_by_key(|f| std::cmp::Reverse(f.severity));
     let mut seen = std::collections::BTreeSet::new();
@@ -124,33 +152,68 @@ fn of_check(check: &Check, parts: &[String]) -> Option<Finding> {
 }
 
 /// Shrinkage that is known less well than the clearance needs.
-fn of_shrinkage(report: &Report, scale: &Scale) -> Option<Finding> {
-    let extent = |p: &crate::report::PartReport| {
-        Some((p.read_back.high? - p.read_back.low?).max_element() / scale.factor)
-    };
-    let largest = report.parts.iter().filter_map(extent).fold(0.0, f64::max);
-    let spread =
-        largest * (scale.range.1 - scale.factor).max(scale.factor - scale.range.0) / scale.factor / 2.0;
+fn of_shrinkage(report: &Report, route: &RouteReport) -> Option<Finding> {
+    let extent = |p: &PartReport| Some((p.read_back.high? - p.read_back.low?).max_element() / p.scale);
+    let mine = report.parts.iter().filter(|p| route.parts.contains(&p.id));
+    let largest = mine.filter_map(extent).fold(0.0, f64::max);
+    let (low, high) = route.scale_range;
+    let spread = largest * (high - route.scale).max(route.scale - low) / route.scale / 2.0;
+    let clearance = route.process.clearance.value;
     let what = format!(
-        "the shrinkage is known so roughly that an end of the longest part may be off by {spread:.2} mm; the clearance is {:.2}",
-        report.clearance.value
+        "{}: the shrinkage is known so roughly that an end of the longest part may be off by {spread:.2} mm; the clearance is {clearance:.2}",
+        route.process.name
     );
-    let remedy = "print and measure one part, and give the shrinkage that you find".into();
-    (spread > report.clearance.value).then(|| Finding {
+    let remedy = "make the coupon first, and give the length that you measure with --measured STEP=MM".into();
+    (spread > clearance).then(|| Finding {
         severity: Severity::Warning,
-        place: Place::default(),
+        place: Place { parts: route.parts.clone(), at: vec![] },
         what,
         remedy,
     })
 }
 
-fn of_no_clearance(report: &Report) -> Option<Finding> {
-    let what = "the clearance is zero: these parts are for looking at, they will not go together".to_string();
+fn of_no_clearance(route: &RouteReport) -> Option<Finding> {
+    let what = format!(
+        "{}: the clearance is zero; rigid parts without air between them are for looking at, they will not go together",
+        route.process.name
+    );
     let remedy = "give the clearance of the process".into();
-    (report.clearance.value == 0.0).then(|| Finding {
+    (route.process.clearance.value == 0.0).then(|| Finding {
         severity: Severity::Warning,
-        place: Place::default(),
+        place: Place { parts: route.parts.clone(), at: vec![] },
         what,
         remedy,
     })
+}
+
+/// Walls and edges thinner than the process makes.
+fn of_walls(part: &PartReport) -> Vec<Finding> {
+    let finding = |severity, at, what, remedy: &str| Finding {
+        severity,
+        place: Place { parts: vec![part.id.clone()], at },
+        what,
+        remedy: remedy.into(),
+    };
+    let least = part.least_wall_mm;
+    let walls = part.wall.unwrap_or_default();
+    let thin = walls.thinnest.map(|w| {
+        let what = format!(
+            "a wall is {:.3} mm thick; {} makes no wall thinner than {least} mm",
+            w.thickness_mm, part.process
+        );
+        finding(
+            Severity::Warning,
+            w.at.to_vec(),
+            what,
+            "take a larger pitch, a thicker shape there, or a process with a finer wall",
+        )
+    });
+    let sharp = walls.sharpest.map(|s| {
+        let what = format!(
+            "an edge of {:.1} degrees: over {:.2} mm from it the part is thinner than {least} mm and will come out blunt",
+            s.degrees, s.thin_over_mm
+        );
+        finding(Severity::Note, vec![s.at], what, "nothing, where a blunt edge does no harm; else a larger pitch or a process with a finer wall")
+    });
+    thin.into_iter().chain(sharp).collect()
 }

@@ -1,12 +1,11 @@
-//! Takes part meshes as they were written and the promised fit; gives the least gap of each pair, and whether it keeps
-//! the promise.
+//! Takes part meshes as they were read back, each computed back to its finished size, and the promised fits; gives the
+//! least gap of each pair, and whether it keeps the promise.
 //!
-//! Independent of how the clearance was made: it looks at triangles alone. Exact up to round-off for parts that do not
-//! cross; parts that cross or enclose one another are told as that.
+//! Independent of how the clearance was made, and of the routes: it looks at triangles alone. Exact up to round-off for
+//! parts that do not cross; parts that cross or enclose one another are told as that.
 
 use crate::bvh::{Aabb, Bvh};
 use crate::cross;
-use crate::ledger::Scale;
 use crate::mesh::Mesh;
 use crate::near::nearest;
 use glam::DVec3;
@@ -51,7 +50,7 @@ pub struct Gap {
     pub verdict: Verdict,
 }
 
-/// A part's mesh on the master, with its tree.
+/// A part's mesh at finished size, with its tree.
 pub struct Made {
     pub id: String,
     pub mesh: Mesh,
@@ -60,23 +59,27 @@ pub struct Made {
 
 /// What gaps are held against.
 pub struct Promise<'a> {
-    pub scale: &'a Scale,
-    /// Between two faces, mm, in the finished assembly.
-    pub fit: f64,
+    /// Of each part, for each face, mm, in the finished assembly; a fit is the sum of two.
+    pub clearances: &'a [f64],
     /// How far writing in f32 can change a distance, mm.
     pub round_off: f64,
     /// Pairs that share a contact facet, ascending.
     pub neighbours: &'a [(usize, usize)],
 }
 
+impl Promise<'_> {
+    fn fit(&self, (i, j): (usize, usize)) -> f64 {
+        self.clearances[i] + self.clearances[j]
+    }
+}
+
 /// Gaps of all neighbours, and of all other pairs that come nearer than the fit would allow by their boxes.
 pub fn gaps(made: &[Option<Made>], promise: &Promise) -> Vec<Gap> {
-    let reach = promise.fit * promise.scale.factor;
     let boxes: Vec<Aabb> =
         made.iter().map(|m| Aabb::of(m.iter().flat_map(|m| m.mesh.vertices.iter().copied()))).collect();
     let wanted = |i: usize, j: usize| {
         promise.neighbours.binary_search(&(i, j)).is_ok()
-            || boxes[i].distance_squared(&boxes[j]) < reach * reach
+            || boxes[i].distance_squared(&boxes[j]) < promise.fit((i, j)).powi(2)
     };
     let pairs: Vec<(usize, usize)> = (0..made.len())
         .flat_map(|i| (i + 1..made.len()).map(move |j| (i, j)))
@@ -102,23 +105,23 @@ fn gap(a: &Made, b: &Made, pair: (usize, usize), promise: &Promise) -> Gap {
         Some(p) => (0.0, [p, p]),
         None => {
             let near = nearest((&a.mesh, &a.tree), (&b.mesh, &b.tree));
-            (near.distance / promise.scale.factor, [near.a, near.b])
+            (near.distance, [near.a, near.b])
         }
     };
     let verdict = if crossing.is_some() || least_mm == 0.0 {
         Verdict::Crossing
     } else {
-        judge(least_mm, relation, promise)
+        judge(least_mm, relation, promise.fit(pair), promise.round_off)
     };
-    let at = at.map(|p| promise.scale.down(p));
-    Gap { a: a.id.clone(), b: b.id.clone(), relation, promised_mm: promise.fit, least_mm, at, verdict }
+    let promised_mm = promise.fit(pair);
+    Gap { a: a.id.clone(), b: b.id.clone(), relation, promised_mm, least_mm, at, verdict }
 }
 
-fn judge(least: f64, relation: Relation, promise: &Promise) -> Verdict {
-    let above = (promise.fit * FIT_TOLERANCE).max(promise.round_off);
-    if least < promise.fit {
+fn judge(least: f64, relation: Relation, fit: f64, round_off: f64) -> Verdict {
+    let above = (fit * FIT_TOLERANCE).max(round_off);
+    if least < fit {
         Verdict::Short
-    } else if relation == Relation::Neighbours && least > promise.fit + above {
+    } else if relation == Relation::Neighbours && least > fit + above {
         Verdict::Wide
     } else {
         Verdict::Kept

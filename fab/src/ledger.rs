@@ -15,6 +15,8 @@ pub struct Entry {
     pub low_percent: f64,
     pub high_percent: f64,
     pub factor: f64,
+    /// Of this step and all before it.
+    pub product: f64,
     pub source: String,
     pub grade: Grade,
 }
@@ -32,14 +34,19 @@ pub struct Scale {
 
 impl Scale {
     pub fn of(process: &Process, datum: DVec3) -> Scale {
-        let entry = |s: &crate::process::Step| Entry {
-            step: s.name.clone(),
-            shrinkage_percent: s.shrinkage.value,
-            low_percent: s.shrinkage.low,
-            high_percent: s.shrinkage.high,
-            factor: growth(s.shrinkage.value),
-            source: s.shrinkage.source.clone(),
-            grade: s.shrinkage.grade,
+        let mut so_far = 1.0;
+        let entry = |s: &crate::process::Step| {
+            so_far *= growth(s.shrinkage.value);
+            Entry {
+                step: s.name.clone(),
+                shrinkage_percent: s.shrinkage.value,
+                low_percent: s.shrinkage.low,
+                high_percent: s.shrinkage.high,
+                factor: growth(s.shrinkage.value),
+                product: so_far,
+                source: s.shrinkage.source.clone(),
+                grade: s.shrinkage.grade,
+            }
         };
         let ledger: Vec<Entry> = process.steps.iter().map(entry).collect();
         let product = |f: fn(&Entry) -> f64| ledger.iter().map(|e| growth(f(e))).product::<f64>();

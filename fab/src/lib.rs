@@ -2,7 +2,7 @@
 //! what was measured on them, and findings. It knows nothing of weaves.
 //!
 //! ```text
-//! shape -> offset { body -> weld -> split -> settle -> relief } -> ledger (scale) -> files -> gap -> check -> report
+//! shape -> offset { body -> weld -> split -> settle -> relief } -> ledger (scale) -> files -> gap, wall -> check -> report -> package
 //! ```
 //!
 //! `make` goes through all of it. Not promised: molds, and walls against the least wall of a process; both are said in
@@ -10,6 +10,7 @@
 
 pub mod bvh;
 pub mod check;
+pub mod coupon;
 pub mod cross;
 mod ears;
 mod external;
@@ -19,9 +20,16 @@ pub mod gap;
 pub mod ledger;
 pub mod make;
 pub mod mesh;
+pub mod mold;
 pub mod near;
 pub mod offset;
+pub mod package;
+pub mod pinch;
 pub mod process;
 pub mod report;
 pub mod shape;
+pub mod shave;
+pub mod solid;
+pub mod threemf;
 mod toml_faults;
+pub mod wall;

@@ -1,8 +1,8 @@
 //! Takes a job, a recipe and a folder; gives files and the report on them.
 //!
-//! Promised: a file that is there was read back, closed, of one body, free of crossings, and its gaps were measured; what
-//! failed one of these is not written and has a finding. Not promised: that a process can make every detail; walls are
-//! not measured yet.
+//! Promised: a file that is there was read back, closed, of one body, free of crossings, and its gaps were measured at
+//! finished size, each part by its own route; what failed one of these is not written and has a finding. Not promised:
+//! that a process can make every detail; thin walls and sharp edges are told, not mended.
 
 use crate::bvh::Bvh;
 use crate::check::Programs;
@@ -14,18 +14,25 @@ use crate::gap::{self, Gap, Made, Promise, Verdict};
 use crate::ledger::Scale;
 use crate::mesh::Mesh;
 use crate::offset::{self, Aim, Offset};
+use crate::package::laying::{Laying, lay};
+use crate::pinch;
 use crate::process::Process;
-use crate::report::{Finding, PartReport, ReadBack, Report};
+use crate::report::{Finding, PartReport, ReadBack, Report, RouteReport};
 use crate::shape::{Fault, Job, Role};
+use crate::shave::{self, Shaving};
+use crate::wall;
 use glam::DVec3;
 use rayon::prelude::*;
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 /// How a job is to be made.
 #[derive(Clone, Debug)]
 pub struct Recipe {
+    /// What makes every part that is not named below.
     pub process: Process,
+    /// Parts made otherwise, by id.
+    pub parts: BTreeMap<String, Process>,
     /// The point that scaling leaves where it is, mm.
     pub datum: DVec3,
     /// OBJ beside STL.
@@ -37,8 +44,39 @@ pub struct Recipe {
 impl Recipe {
     /// The process, scaled about the assembly's origin, both formats, all checkers.
     pub fn new(process: Process) -> Recipe {
-        Recipe { process, datum: DVec3::ZERO, obj: true, programs: Some(Programs::default()) }
+        Recipe {
+            process,
+            parts: BTreeMap::new(),
+            datum: DVec3::ZERO,
+            obj: true,
+            programs: Some(Programs::default()),
+        }
     }
+
+    pub fn process_of(&self, id: &str) -> &Process {
+        self.parts.get(id).unwrap_or(&self.process)
+    }
+
+    /// Ids that no part of the job has.
+    fn faults(&self, job: &Job) -> Vec<Fault> {
+        let known: BTreeSet<&str> = job.parts.iter().map(|p| p.id.as_str()).collect();
+        let fault = |id: &String| Fault {
+            place: "fab.parts".into(),
+            what: format!(
+                "names a process for \"{id}\", which is no part (hint: parts are {})",
+                some(&known)
+            ),
+        };
+        self.parts.keys().filter(|id| !known.contains(id.as_str())).map(fault).collect()
+    }
+}
+
+/// Ids that a message names.
+const NAMED: usize = 12;
+
+fn some(ids: &BTreeSet<&str>) -> String {
+    let named = ids.iter().take(NAMED).copied().collect::<Vec<_>>().join(", ");
+    if ids.len() > NAMED { format!("{named} and {} more", ids.len() - NAMED) } else { named }
 }
 
 #[derive(Debug, thiserror::Error)]
@@ -47,6 +85,9 @@ pub enum FabError {
     Job(Vec<Fault>),
     #[error(transparent)]
     File(#[from] FileError),
+    /// The file of figures that the program carries.
+    #[error("{0}")]
+    Figures(String),
 }
 
 /// The least altitude of a triangle, in snap distances: snapping moves three corners by one each, so that 4 can not turn
@@ -65,68 +106,166 @@ pub(crate) struct Piece {
     pub id: String,
     /// Of its file names.
     pub stem: String,
+    pub scale: Scale,
     pub offset: Offset,
+    /// How it lies on the bed, where its print face was shaved.
+    pub laid: Option<Laying>,
     /// On the master, as f32 can hold it.
     pub master: Mesh,
-    /// What was read back; `None` where the part is not to be written.
+    /// What was read back, at finished size; `None` where the part is not to be written.
     pub made: Option<Made>,
+    /// What keeps it from being written, and what does not.
     pub faults: Vec<Finding>,
+    pub notes: Vec<Finding>,
+}
+
+/// What was made: the report, and the meshes on the master in the order of the parts (`None`: not written).
+pub struct Output {
+    pub report: Report,
+    pub masters: Vec<Option<Mesh>>,
+    /// How parts lie whose print face was shaved; `None` where nothing was.
+    pub laid: Vec<Option<Laying>>,
 }
 
 /// Makes everything: offsets, files, measurements, findings.
 pub fn make(job: &Job, recipe: &Recipe, folder: &Path) -> Result<Report, FabError> {
-    let faults = job.faults();
+    Ok(output(job, recipe, folder)?.report)
+}
+
+/// The same, with the meshes.
+pub fn output(job: &Job, recipe: &Recipe, folder: &Path) -> Result<Output, FabError> {
+    let job = &Job { shapes: job.shapes.iter().map(pinch::parted).collect(), ..job.clone() };
+    let faults = [job.faults(), recipe.faults(job)].concat();
     if !faults.is_empty() {
         return Err(FabError::Job(faults));
     }
     let job = &job.planar();
-    let scale = Scale::of(&recipe.process, recipe.datum);
-    let snap = stl::snap_distance(largest_coordinate(job, &scale)) / scale.factor;
-    let mut pieces = pieces(job, &aim(recipe.process.clearance.value, snap), &scale);
+    let scales: Vec<Scale> =
+        job.parts.iter().map(|p| Scale::of(recipe.process_of(&p.id), recipe.datum)).collect();
+    let snap = snap_finished(job, &scales);
+    let mut pieces = pieces(job, recipe, snap, scales);
     let mut batch = Batch::new(folder)?;
     for piece in &mut pieces {
         write(piece, recipe, &mut batch)?;
     }
-    let gaps = measure(job, recipe, &scale, snap, &mut pieces);
+    let gaps = measure(job, recipe, snap, &mut pieces);
     for piece in pieces.iter().filter(|p| p.made.is_none()) {
         file_names(&piece.stem).iter().for_each(|n| batch.discard(n));
     }
     batch.commit()?;
-    let mut report = report(job, recipe, &scale, &pieces, gaps, folder);
+    let mut report = report(job, recipe, &pieces, gaps, folder);
     if let Some(programs) = &recipe.programs {
         external::check_all(&mut report, &pieces, programs);
     }
-    findings::collect(&mut report, &scale);
-    Ok(report)
+    findings::collect(&mut report);
+    let laid = pieces.iter().map(|p| p.laid).collect();
+    let masters = pieces.into_iter().map(|p| p.made.is_some().then_some(p.master)).collect();
+    Ok(Output { report, masters, laid })
+}
+
+/// How far writing in f32 moves a point of the finished assembly, mm: the worst over all routes.
+fn snap_finished(job: &Job, scales: &[Scale]) -> f64 {
+    let of_part = |(part, scale): (&crate::shape::PlacedPart, &Scale)| {
+        let points = job.shapes[part.shape].vertices.iter();
+        let largest = points.map(|&v| scale.up(part.pose.transform_point3(v)).abs().max_element());
+        stl::snap_distance(largest.fold(0.0, f64::max)) / scale.factor
+    };
+    job.parts.iter().zip(scales).map(of_part).fold(0.0, f64::max)
 }
 
 fn aim(clearance: f64, snap: f64) -> Aim {
-    Aim {
-        depth: clearance + MARGIN_IN_SNAPS * snap,
-        fit: 2.0 * (clearance + snap),
-        thinnest: THINNEST_IN_SNAPS * snap,
+    let depth = clearance + MARGIN_IN_SNAPS * snap;
+    Aim { depth, share: clearance + snap, thinnest: THINNEST_IN_SNAPS * snap, weld: depth * offset::REACH }
+}
+
+fn pieces(job: &Job, recipe: &Recipe, snap: f64, scales: Vec<Scale>) -> Vec<Piece> {
+    let stems = stems(&job.parts.iter().map(|p| p.id.clone()).collect::<Vec<_>>());
+    let clearance = |p: &crate::shape::PlacedPart| recipe.process_of(&p.id).clearance.value;
+    let mut aims: Vec<Aim> = job.parts.iter().map(|p| aim(clearance(p), snap)).collect();
+    let attempt = |aims: &[Aim]| -> Vec<Piece> {
+        let all: Vec<_> = job.parts.iter().zip(&stems).zip(offset::offset(job, aims)).zip(&scales).collect();
+        all.into_par_iter()
+            .map(|(((part, stem), offset), scale)| piece(&part.id, stem.clone(), offset, scale.clone()))
+            .collect()
+    };
+    let mut best = attempt(&aims);
+    for _ in 0..COARSER.1 {
+        if best.iter().all(|p| p.faults.is_empty()) {
+            break;
+        }
+        for (aim, piece) in aims.iter_mut().zip(&best) {
+            aim.weld *= if piece.faults.is_empty() { 1.0 } else { COARSER.0 };
+        }
+        let again = attempt(&aims);
+        if faulty(&again) < faulty(&best) {
+            best = again;
+        }
+    }
+    best.par_iter_mut().enumerate().for_each(|(p, piece)| {
+        carve(job, p, aims[p].depth, piece);
+        shave(recipe.process_of(&job.parts[p].id), piece);
+    });
+    best
+}
+
+/// The fallback: the part less a block around each contact facet, where no move was found.
+fn carve(job: &Job, p: usize, depth: f64, failed: &mut Piece) {
+    if failed.faults.is_empty() {
+        return;
+    }
+    let part = &job.parts[p];
+    let contact: Vec<bool> = part.roles.iter().map(|r| *r != Role::Outer).collect();
+    let Ok(Some(mesh)) = offset::carve::carve(&job.shapes[part.shape], &contact, depth) else { return };
+    let mesh = mesh.map(|v| part.pose.transform_point3(v));
+    let offset = Offset { mesh, collapses: 0, longest_move: depth * CORNER, same_as: p, failures: vec![] };
+    let mut carved = piece(&failed.id, failed.stem.clone(), offset, failed.scale.clone());
+    if carved.faults.is_empty() {
+        carved.notes.push(findings::of_carving(&failed.id, &failed.faults));
+        *failed = carved;
     }
 }
 
-fn pieces(job: &Job, aim: &Aim, scale: &Scale) -> Vec<Piece> {
-    let stems = stems(&job.parts.iter().map(|p| p.id.clone()).collect::<Vec<_>>());
-    let offsets = offset::offset(job, aim);
-    let all: Vec<_> = job.parts.iter().zip(stems).zip(offsets).collect();
-    all.into_par_iter().map(|((part, stem), offset)| piece(&part.id, stem, offset, scale)).collect()
+/// How far carving goes at a corner, in depths: along the diagonal of a square.
+const CORNER: f64 = std::f64::consts::SQRT_2;
+
+/// Slice and chamfer of what is printed in the part's own shape.
+fn shave(process: &Process, piece: &mut Piece) {
+    let print = &process.print;
+    let what = Shaving { flatten: print.flatten.value, chamfer: print.elephant_foot.value };
+    if what.is_off() || !process.route.prints_the_shape() || !piece.faults.is_empty() {
+        return;
+    }
+    let laying = lay(&piece.master);
+    match shave::shaved(&piece.master, &laying, what) {
+        Ok(master) => {
+            piece.faults.extend(findings::of_mesh(&piece.id, &master, &piece.scale));
+            (piece.master, piece.laid) = (master, Some(laying));
+        }
+        Err(why) => piece.notes.push(findings::of_shaving(&piece.id, &why)),
+    }
 }
 
-fn piece(id: &str, stem: String, offset: Offset, scale: &Scale) -> Piece {
+/// Where the exact move fails, edges so many times longer are united first, and so many times: 0.02, 0.08, 0.32 and 1.28
+/// of the depth. What a weld costs in clearance `relief` mends, and the gap is measured all the same.
+const COARSER: (f64, usize) = (4.0, 3);
+
+fn faulty(pieces: &[Piece]) -> usize {
+    pieces.iter().filter(|p| !p.faults.is_empty()).count()
+}
+
+fn piece(id: &str, stem: String, offset: Offset, scale: Scale) -> Piece {
     let master = stl::snapped(&offset.mesh.map(|v| scale.up(v)));
     let mut faults: Vec<Finding> = offset.failures.iter().map(|f| findings::of_failure(id, f)).collect();
-    faults.extend(findings::of_mesh(id, &master, scale));
-    Piece { id: id.to_string(), stem, offset, master, made: None, faults }
+    faults.extend(findings::of_mesh(id, &master, &scale));
+    Piece { id: id.to_string(), stem, scale, offset, laid: None, master, made: None, faults, notes: vec![] }
 }
 
 /// Gaps of what was read back; a piece that comes too near to another is not to be written.
-fn measure(job: &Job, recipe: &Recipe, scale: &Scale, snap: f64, pieces: &mut [Piece]) -> Vec<Gap> {
+fn measure(job: &Job, recipe: &Recipe, snap: f64, pieces: &mut [Piece]) -> Vec<Gap> {
     let neighbours = job.neighbours();
-    let fit = 2.0 * recipe.process.clearance.value;
-    let promise = Promise { scale, fit, round_off: PAIR_IN_SNAPS * snap, neighbours: &neighbours };
+    let clearances: Vec<f64> = pieces.iter().map(|p| recipe.process_of(&p.id).clearance.value).collect();
+    let promise =
+        Promise { clearances: &clearances, round_off: PAIR_IN_SNAPS * snap, neighbours: &neighbours };
     let made: Vec<Option<Made>> = pieces.iter_mut().map(|p| p.made.take()).collect();
     let gaps = gap::gaps(&made, &promise);
     let bad = |g: &&Gap| matches!(g.verdict, Verdict::Short | Verdict::Crossing);
@@ -137,14 +276,8 @@ fn measure(job: &Job, recipe: &Recipe, scale: &Scale, snap: f64, pieces: &mut [P
     gaps
 }
 
-fn report(
-    job: &Job,
-    recipe: &Recipe,
-    scale: &Scale,
-    pieces: &[Piece],
-    gaps: Vec<Gap>,
-    folder: &Path,
-) -> Report {
+fn report(job: &Job, recipe: &Recipe, pieces: &[Piece], gaps: Vec<Gap>, folder: &Path) -> Report {
+    let scale = Scale::of(&recipe.process, recipe.datum);
     Report {
         name: job.name.clone(),
         process: recipe.process.name.clone(),
@@ -153,25 +286,43 @@ fn report(
         scale: scale.factor,
         scale_range: scale.range,
         datum: scale.datum,
-        ledger: scale.ledger.clone(),
-        parts: (0..pieces.len()).map(|p| part_report(job, pieces, p, recipe, folder)).collect(),
+        ledger: scale.ledger,
+        routes: routes(job, recipe),
+        parts: (0..pieces.len())
+            .into_par_iter()
+            .map(|p| part_report(job, pieces, p, recipe, folder))
+            .collect(),
         gaps,
         pair_checks: vec![],
         molds: vec![],
-        molds_note: "molds are not built yet".into(),
-        findings: pieces.iter().flat_map(|p| p.faults.clone()).collect(),
+        molds_note: "a package makes them".into(),
+        findings: pieces.iter().flat_map(|p| [&p.faults[..], &p.notes].concat()).collect(),
     }
 }
 
-fn largest_coordinate(job: &Job, scale: &Scale) -> f64 {
-    let place = |p: &crate::shape::PlacedPart| {
-        let points = job.shapes[p.shape].vertices.iter();
-        points.map(|&v| scale.up(p.pose.transform_point3(v)).abs().max_element()).fold(0.0, f64::max)
-    };
-    job.parts.iter().map(place).fold(0.0, f64::max)
+/// The processes in use, each with its scale and the parts that it makes, in the order of their first part.
+fn routes(job: &Job, recipe: &Recipe) -> Vec<RouteReport> {
+    let mut routes: Vec<RouteReport> = Vec::new();
+    for part in &job.parts {
+        let process = recipe.process_of(&part.id);
+        match routes.iter_mut().find(|r| r.process == *process) {
+            Some(route) => route.parts.push(part.id.clone()),
+            None => {
+                let scale = Scale::of(process, recipe.datum);
+                routes.push(RouteReport {
+                    process: process.clone(),
+                    scale: scale.factor,
+                    scale_range: scale.range,
+                    ledger: scale.ledger,
+                    parts: vec![part.id.clone()],
+                });
+            }
+        }
+    }
+    routes
 }
 
-fn file_names(stem: &str) -> [String; 2] {
+pub(crate) fn file_names(stem: &str) -> [String; 2] {
     ["stl", "obj"].map(|ending| format!("{stem}.mm.{ending}"))
 }
 
@@ -190,6 +341,7 @@ fn write(piece: &mut Piece, recipe: &Recipe, batch: &mut Batch) -> Result<(), Fi
     }
     piece.faults.extend(findings::of_copy(&piece.id, &stl_name, same_solid(&mesh, &piece.master)));
     if piece.faults.is_empty() {
+        let mesh = mesh.map(|v| piece.scale.down(v));
         let tree = Bvh::new(&mesh);
         piece.made = Some(Made { id: piece.id.clone(), mesh, tree });
     }
@@ -208,22 +360,29 @@ fn same_solid(read: &Mesh, written: &Mesh) -> bool {
 
 fn part_report(job: &Job, pieces: &[Piece], p: usize, recipe: &Recipe, folder: &Path) -> PartReport {
     let (part, piece) = (&job.parts[p], &pieces[p]);
+    let process = recipe.process_of(&part.id);
     let shape = &job.shapes[part.shape];
-    let (nominal, finished) = (shape.volume(), piece.offset.mesh.volume());
+    let (nominal, finished) = (shape.volume(), piece.master.volume() / piece.scale.factor.powi(3));
     let [stl_name, obj_name] = file_names(&piece.stem).map(|name| folder.join(name).display().to_string());
     let same = piece.offset.same_as;
     PartReport {
         id: part.id.clone(),
+        process: process.name.clone(),
+        scale: piece.scale.factor,
+        clearance_mm: process.clearance.value,
         file: piece.made.as_ref().map(|_| stl_name),
         obj: piece.made.as_ref().filter(|_| recipe.obj).map(|_| obj_name),
-        same_as: (same != p).then(|| job.parts[same].id.clone()),
-        read_back: piece.made.as_ref().map(|m| ReadBack::of(&m.mesh)).unwrap_or_default(),
+        // Congruent parts may have been laid on different faces to be shaved.
+        same_as: (same != p && piece.laid.is_none()).then(|| job.parts[same].id.clone()),
+        read_back: piece.made.as_ref().map(|_| ReadBack::of(&piece.master)).unwrap_or_default(),
         expected_volume_mm3: piece.master.volume(),
         nominal_volume_mm3: nominal,
         removed_mm3: nominal - finished,
-        clearance_volume_mm3: recipe.process.clearance.value * contact_area(job, p),
-        mass_g: finished * recipe.process.density.value / MM3_IN_CM3,
+        clearance_volume_mm3: process.clearance.value * contact_area(job, p),
+        mass_g: finished * process.density.value / MM3_IN_CM3,
         longest_move_mm: piece.offset.longest_move,
+        wall: piece.made.as_ref().map(|m| wall::measure(&m.mesh, &m.tree, process.least_wall.value)),
+        least_wall_mm: process.least_wall.value,
         checks: vec![],
     }
 }
@@ -234,7 +393,7 @@ fn contact_area(job: &Job, p: usize) -> f64 {
     contact.map(|(f, _)| job.shapes[part.shape].facet_area(f)).sum()
 }
 
-const MM3_IN_CM3: f64 = 1000.0;
+pub(crate) const MM3_IN_CM3: f64 = 1000.0;
 
 /// Crossings of a mesh with itself, for `findings`.
 pub(crate) fn crossings(mesh: &Mesh) -> Vec<cross::Crossing> {

@@ -4,7 +4,9 @@ use crate::check::Check;
 use crate::gap::Gap;
 use crate::ledger::Entry;
 use crate::mesh::{Closure, Mesh};
-use crate::process::Figure;
+use crate::mold::Kind;
+use crate::process::{Figure, Process};
+use crate::wall::Walls;
 use glam::DVec3;
 use serde::Serialize;
 
@@ -30,6 +32,13 @@ pub struct Finding {
     pub place: Place,
     pub what: String,
     pub remedy: String,
+}
+
+impl Finding {
+    /// A remark about the whole.
+    pub fn note(what: String, remedy: &str) -> Finding {
+        Finding { severity: Severity::Note, place: Place::default(), what, remedy: remedy.to_string() }
+    }
 }
 
 /// What was measured on a file after it was written, on the master's scale; all `None` where there is no file.
@@ -64,6 +73,10 @@ impl ReadBack {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct PartReport {
     pub id: String,
+    /// What makes it, and its own K and clearance for each face.
+    pub process: String,
+    pub scale: f64,
+    pub clearance_mm: f64,
     /// Binary STL on the master's scale, in its place in the assembly, mm; `None` where nothing was written.
     pub file: Option<String>,
     pub obj: Option<String>,
@@ -82,7 +95,20 @@ pub struct PartReport {
     pub mass_g: f64,
     /// The longest way that clearance moved a corner, mm.
     pub longest_move_mm: f64,
+    /// Where it is thinner than its process makes, finished size; `None` where there is no file.
+    pub wall: Option<Walls>,
+    pub least_wall_mm: f64,
     pub checks: Vec<Check>,
+}
+
+/// A process in use: its scale, and the parts that it makes.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct RouteReport {
+    pub process: Process,
+    pub scale: f64,
+    pub scale_range: (f64, f64),
+    pub ledger: Vec<Entry>,
+    pub parts: Vec<String>,
 }
 
 /// A check of two parts together.
@@ -110,18 +136,30 @@ pub struct Report {
     /// The point of the assembly that scaling leaves in place, mm.
     pub datum: DVec3,
     pub ledger: Vec<Entry>,
+    /// All processes in use; the figures above are those of the one that makes whatever has none of its own.
+    pub routes: Vec<RouteReport>,
     pub parts: Vec<PartReport>,
     pub gaps: Vec<Gap>,
     pub pair_checks: Vec<PairCheck>,
-    /// Always empty so far; see `molds_note`.
-    pub molds: Vec<Mold>,
+    /// Pieces of molds; a package makes them.
+    pub molds: Vec<MoldFile>,
     pub molds_note: String,
     pub findings: Vec<Finding>,
 }
 
-/// A mold; none can be made yet, so there is no value of this type.
+/// A piece of a mold as written.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub enum Mold {}
+pub struct MoldFile {
+    /// The mold that it belongs to.
+    pub mold: String,
+    pub file: String,
+    pub kind: Kind,
+    /// How many to make.
+    pub copies: usize,
+    pub volume_mm3: f64,
+    pub watertight: bool,
+    pub checks: Vec<Check>,
+}
 
 impl Report {
     /// The gravest severity among the findings.

@@ -92,10 +92,27 @@ impl<'a> Cursor<'a> {
         text
     }
 
+    /// Whether the key is there.
+    pub fn has(&self, key: &str) -> bool {
+        self.get(key).is_some()
+    }
+
     /// A number in a range; NaN stands in for a bad one.
     pub fn number_in(&mut self, key: &'static str, least: f64, most: f64, unit: &str) -> f64 {
+        self.number_because(key, (least, most), unit, "")
+    }
+
+    /// The same, with the reason why nothing beyond the range is possible.
+    pub fn number_because(
+        &mut self,
+        key: &'static str,
+        (least, most): (f64, f64),
+        unit: &str,
+        because: &str,
+    ) -> f64 {
         self.asked.push(key);
-        let hint = format!("a number from {least} to {most} {unit}");
+        let why = if because.is_empty() { String::new() } else { format!("; {because}") };
+        let hint = format!("a number from {least} to {most} {unit}{why}");
         match self.get(key).map(|v| number(v.get_ref())) {
             None => self.missing(key, &hint),
             Some(Some(x)) if (least..=most).contains(&x) => return x,

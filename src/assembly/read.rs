@@ -11,8 +11,20 @@ use rayon::prelude::*;
 use std::collections::BTreeMap;
 use std::path::Path;
 
-/// The assembly, and remarks about files that were taken in good faith.
-pub fn assembly(spec: &Spec, meshes: &MeshSpec) -> Result<(Assembly, Vec<String>), Faults> {
+/// What was read.
+pub struct Read {
+    pub assembly: Assembly,
+    /// By how much each coordinate of each part may be off in its file, in model units.
+    pub resolution: Vec<f64>,
+    /// What was taken in good faith, in words.
+    pub remarks: Vec<String>,
+}
+
+/// The assembly that a spec names.
+///
+/// # Errors
+/// All faults of all files.
+pub fn assembly(spec: &Spec, meshes: &MeshSpec) -> Result<Read, Faults> {
     let reading =
         Reading { mm_per_unit: meshes.mm_per_unit, tolerance: meshes.tolerance_mm / meshes.mm_per_unit };
     let mut first: BTreeMap<&Path, usize> = BTreeMap::new();
@@ -23,11 +35,13 @@ pub fn assembly(spec: &Spec, meshes: &MeshSpec) -> Result<(Assembly, Vec<String>
     let mut files: Vec<(&Path, usize)> = first.iter().map(|(p, k)| (*p, *k)).collect();
     files.sort_by_key(|f| f.1);
     let read: Vec<_> = files.par_iter().map(|(path, _)| read_mesh(path, reading)).collect();
-    let (mut solids, mut faults, mut remarks) = (Vec::<Solid>::new(), Vec::new(), Vec::new());
+    let (mut solids, mut known) = (Vec::<Solid>::new(), Vec::new());
+    let (mut faults, mut remarks) = (Vec::new(), Vec::new());
     for ((path, _), mesh) in files.iter().zip(read) {
         match mesh {
             Ok(mesh) => {
                 remarks.extend(mesh.remarks.iter().map(|r| format!("{}: {r}", path.display())));
+                known.push(mesh.resolution);
                 solids.push(mesh.solid);
             }
             Err(bad) => faults.extend(bad.0.into_iter().map(|f| fault(spec, meshes, f))),
@@ -40,8 +54,10 @@ pub fn assembly(spec: &Spec, meshes: &MeshSpec) -> Result<(Assembly, Vec<String>
         pose: p.at,
         mobility: p.held,
     };
-    let parts = meshes.parts.iter().map(part).collect();
-    Ok((Assembly { name: spec.name.clone(), solids, parts, mm_per_unit: meshes.mm_per_unit }, remarks))
+    let parts: Vec<Part> = meshes.parts.iter().map(part).collect();
+    let resolution = parts.iter().map(|p| known[p.solid]).collect();
+    let assembly = Assembly { name: spec.name.clone(), solids, parts, mm_per_unit: meshes.mm_per_unit };
+    Ok(Read { assembly, resolution, remarks })
 }
 
 /// A mesh's fault, with the line of the spec that named the file.

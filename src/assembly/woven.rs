@@ -6,9 +6,9 @@
 use super::{Assembly, Mobility, Part, PartIx};
 use crate::fault::{Fault, Faults};
 use crate::sites::{Owner, Site, Sites};
-use crate::spec::{HeldSpec, Spec, WovenSpec};
+use crate::spec::{HeldSpec, ProfileSpec, Spec, WovenSpec};
 use crate::tile::{self, Across, Lattice, Piece, Tile};
-use crate::weave::{Kind, Strand};
+use crate::weave::{Kind, Strand, Weave};
 use glam::{DAffine3, DVec3};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -17,6 +17,9 @@ pub struct Woven {
     pub assembly: Assembly,
     /// The piece of each part.
     pub pieces: Vec<Piece>,
+    /// What the sites were sampled from.
+    pub weave: Weave,
+    pub profile: ProfileSpec,
     sites: Sites,
     /// For each solid and facet: its own site and what it faces, in the solid's frame.
     across: Vec<Vec<(Site, Across)>>,
@@ -49,7 +52,8 @@ pub fn build(spec: &Spec, woven: &WovenSpec) -> Result<Woven, Faults> {
     let (solids, across) = tiles.into_iter().map(|Tile { solid, across, .. }| (solid, across)).unzip();
     let assembly = Assembly { name: spec.name.clone(), solids, parts, mm_per_unit: woven.pitch_mm };
     let shifts = placed.into_iter().map(|p| p.1).collect();
-    Ok(Woven { along: along(&pieces), assembly, pieces, sites, across, shifts })
+    let (weave, profile) = (woven.weave.clone(), woven.profile.clone());
+    Ok(Woven { along: along(&pieces), assembly, pieces, weave, profile, sites, across, shifts })
 }
 
 /// The piece of the same orbit that starts in a representative square, and the shift from it to the piece.

@@ -11,7 +11,7 @@ use crate::chirality::answer::{Handedness, WarpIs};
 use crate::chirality::{HandsError, of_weave};
 use crate::contact;
 use crate::fault::Faults;
-use crate::flex::flex;
+use crate::flex::{self, SAME_VERTEX, WORK, Wanted, flex};
 use crate::repeats::{Search, Tried, repeats};
 use crate::spec::{Cut, HeldSpec, Layout, Places, Spec, Subject, WovenSpec};
 use crate::weave::{Weave, family};
@@ -171,7 +171,9 @@ fn flexible(weave: &Weave, ask: &Ask) -> Flexible {
         Ok(built) => built,
         Err(faults) => return none(Status::NotRun, faults.to_string()),
     };
-    match flex(&built.assembly, &contact::woven::patches(&built)) {
+    let asked =
+        flex::Ask { clearance: 0.0, wanted: Wanted::Smallest, work: WORK, until: None, within: SAME_VERTEX };
+    match flex(&built.assembly, &contact::woven::patches(&built), &asked) {
         Err(fault) => none(Status::NotRun, fault.to_string()),
         Ok(found) => {
             let (minimum, lower, upper) = (found.minimum(), found.lower, found.upper);

@@ -44,12 +44,15 @@ pub enum Verb {
         #[arg(long, default_value = "out")]
         out: PathBuf,
     },
-    /// Is it locked? By translations, by rigid motions; with a certificate: `weavelock check plain.toml`
+    /// Is it locked? By translations, by rigid motions; with a certificate: `weavelock check plain.toml --refine`
     Check {
         file: PathBuf,
         /// Part to take as fixed where none is held (the verdict does not depend on it)
         #[arg(long, value_name = "PART")]
         fix: Option<String>,
+        /// Repeat with doubled samples until the verdict stands, or say that it does not (64 samples at most)
+        #[arg(long)]
+        refine: bool,
     },
     /// How does it come apart, and together? `weavelock plan twill.toml --json`
     Plan {
@@ -61,10 +64,12 @@ pub enum Verb {
         #[arg(long, value_name = "LENGTH", value_parser = length)]
         clearance: Option<f64>,
     },
-    /// Does it need flexible parts? The fewest, which, and the bound's proof
-    Flex { file: PathBuf },
-    /// The smallest repetition of the unit tile that locks: `weavelock repeats [2,2,1]`
-    Repeats(Repeats),
+    /// Which part stops which: along a direction, or over all of them: `weavelock blocking roof.toml --sphere roof.svg`
+    Blocking(super::blocking::Blocking),
+    /// Does it need flexible parts? The fewest, all such sets, and the bound's proof: `weavelock flex plain.toml`
+    Flex(super::flex::Asked),
+    /// The smallest repetition of the unit tile that locks: `weavelock repeats [2,2,1] --swatch n,2n --phases all`
+    Repeats(Box<super::repeats::Asked>),
     /// Hands of the tile, of weft against warp, and of the assembly: `weavelock chirality plain.toml --export hands`
     Chirality {
         #[arg(allow_hyphen_values = true, value_name = "FILE|[a,b,c]")]
@@ -85,18 +90,10 @@ pub enum Verb {
         #[arg(long, value_name = "FILE")]
         wif: Option<PathBuf>,
     },
-    /// The parts with clearance and allowance built in, checked: `weavelock fab plain.toml --out parts`
-    Fab {
-        file: PathBuf,
-        /// Process by name or file, over the spec's
-        #[arg(long)]
-        process: Option<String>,
-        #[arg(long, default_value = "parts")]
-        out: PathBuf,
-        /// Also check with OpenSCAD, PrusaSlicer and ADMesh, where installed
-        #[arg(long)]
-        check: bool,
-    },
+    /// A fabricator's package: parts, plates, sheets, coupon, checked: `weavelock fab plain.toml --out package`
+    Fab(Fab),
+    /// The processes that come along; with a name the file itself, to copy: `weavelock processes fdm-pla > my.toml`
+    Processes { name: Option<String> },
     /// The parts as they are, in place or one by one, in mm: `weavelock export plain.toml --as obj`
     Export {
         file: PathBuf,
@@ -122,30 +119,39 @@ pub enum Verb {
     Schema,
 }
 
+/// What a package is made of, and how.
 #[derive(ClapArgs, Debug)]
-pub struct Repeats {
-    #[arg(allow_hyphen_values = true, value_name = "[a,b,c]")]
-    pub weave: String,
-    /// Largest repetition to try
-    #[arg(long, default_value_t = 6, value_parser = clap::value_parser!(u32).range(1..=64))]
-    pub most: u32,
-    /// Phases of the cuts to try; all must lock
-    #[arg(long, value_delimiter = ',', default_value = "0", allow_hyphen_values = true)]
-    pub phase: Vec<i32>,
-    /// Wefts and warps of the swatch (default: n and n)
-    #[arg(long, value_parser = clap::value_parser!(u32).range(1..=256))]
-    pub wefts: Option<u32>,
-    #[arg(long, value_parser = clap::value_parser!(u32).range(1..=256))]
-    pub warps: Option<u32>,
-    /// Profile, as in a spec's [profile]
-    #[arg(long, default_value_t = 0.6)]
-    pub rise: f64,
-    #[arg(long, default_value_t = 1.0)]
-    pub lift: f64,
-    #[arg(long, default_value_t = 1.0)]
-    pub cover: f64,
-    #[arg(long, default_value_t = 8)]
-    pub samples: u32,
+pub struct Fab {
+    pub file: PathBuf,
+    /// Process by name or file, over the spec's: `--process sla`, `--process my.toml`
+    #[arg(long, value_name = "NAME|FILE")]
+    pub process: Option<String>,
+    /// Another process for one part: `--part weft-0=silicone-platinum`; may be given several times
+    #[arg(long = "part", value_name = "ID=NAME|FILE")]
+    pub parts: Vec<String>,
+    #[arg(long, default_value = "package")]
+    pub out: PathBuf,
+    /// Replace files that are there
+    #[arg(long)]
+    pub force: bool,
+    /// Air on each face, over the process: `--clearance "0.25 mm"`
+    #[arg(long, value_name = "LENGTH", value_parser = length)]
+    pub clearance: Option<f64>,
+    /// Lengths in mm of the coupon's 60 mm bar after a step: `--measured print=59.80,silicone=59.75`
+    #[arg(long, value_name = "STEP=MM", value_delimiter = ',')]
+    pub measured: Vec<String>,
+    /// Print bed by name or size: `--bed ender-3`, `--bed "250 x 210 x 220 mm"`
+    #[arg(long, value_name = "NAME|SIZE")]
+    pub bed: Option<String>,
+    /// Chamfer around the print face: `--elephant-foot "0.3 mm"`
+    #[arg(long, value_name = "LENGTH", value_parser = length)]
+    pub elephant_foot: Option<f64>,
+    /// Cut this much off below, for a flat print face: `--flatten "0.2 mm"`
+    #[arg(long, value_name = "LENGTH", value_parser = length)]
+    pub flatten: Option<f64>,
+    /// Also check with OpenSCAD, PrusaSlicer (information and slicing) and ADMesh, where installed
+    #[arg(long)]
+    pub check: bool,
 }
 
 #[derive(ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
@@ -163,6 +169,6 @@ pub enum Together {
 }
 
 /// A length with its unit, in mm.
-fn length(text: &str) -> Result<f64, String> {
+pub fn length(text: &str) -> Result<f64, String> {
     crate::spec::length_mm(text)
 }

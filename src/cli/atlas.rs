@@ -7,11 +7,12 @@ use super::told::{News, Told, Trouble};
 use crate::atlas::{self, Ask, FLEX_UP_TO, MOST, Phases, Progress, Row, Settings, Shard, Which, Written};
 use crate::chirality::answer::Handedness;
 use crate::report::content::{Chapter, Column, Table, Tone};
+use crate::spec;
 use clap::{Args as ClapArgs, ValueEnum};
 use schemars::JsonSchema;
 use serde::Serialize;
 use std::io::{IsTerminal, Write};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 #[derive(ClapArgs, Debug)]
@@ -63,7 +64,7 @@ impl Asked {
     fn ask(&self) -> Result<Ask, Trouble> {
         let settings =
             Settings { rise: self.rise, lift: self.lift, cover: self.cover, samples: self.samples };
-        super::questions::profile(self.rise, self.lift, self.cover, self.samples)?;
+        bounded(self.rise, self.lift, self.cover, self.samples)?;
         Ok(Ask {
             max_n: self.max_n,
             which: if self.every { Which::Every } else { Which::Representatives },
@@ -187,4 +188,13 @@ fn time(left: Duration) -> String {
         s @ 100..=5999 => format!("{} min", s.div_ceil(60)),
         s => format!("{:.1} h", s as f64 / 3600.0),
     }
+}
+
+/// Holds the profile of the flags to the bounds of a spec's.
+fn bounded(rise: f64, lift: f64, cover: f64, samples: u32) -> Result<(), Trouble> {
+    let text = format!(
+        "[weave]\nabc = [1, 1, 1]\n[profile]\nrise = {rise:?}\nlift = {lift:?}\ncover = {cover:?}\nsamples = {samples}\n[swatch]\nwefts = 2\nwarps = 2\ncut = \"window\"\n[size]\npitch = \"1 mm\"\n"
+    );
+    spec::parse(&text, Path::new("(flags)"), spec::Syntax::Toml)?;
+    Ok(())
 }

@@ -1,6 +1,6 @@
 //! Takes an assembly in place; writes its parts, as made or as they are, and tells what was written.
 //!
-//! Not promised: molds; they are not built yet, and the answer says so.
+//! Not promised: a package around the parts; `package` makes that.
 
 use super::args::{Format, Together};
 use super::load::Placed;
@@ -9,13 +9,14 @@ use crate::fabricate;
 use crate::report::content::{Chapter, Column, Table, Tone};
 use crate::report::export;
 use crate::report::file::write_whole;
+use crate::spec::FabSpec;
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::path::Path;
 use weavelock_fab::check::{Outcome, Programs};
 use weavelock_fab::make::{self, Recipe};
 use weavelock_fab::process::{Overrides, Process};
-use weavelock_fab::report::{Report, Severity};
+use weavelock_fab::report::{Report, RouteReport, Severity};
 
 /// Whether programs of others are asked.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -40,40 +41,100 @@ struct FabAnswer<'a> {
     report: &'a Report,
 }
 
-pub fn fab(placed: &Placed, process: Option<&str>, out: &Path, checkers: Checkers) -> Result<Told, Trouble> {
-    let report = made(placed, process, out, checkers)?;
-    Ok(told_fab(&report, out))
-}
-
-pub fn made(
-    placed: &Placed,
-    process: Option<&str>,
-    out: &Path,
-    checkers: Checkers,
-) -> Result<Report, Trouble> {
-    let own = placed.spec.fab.as_ref();
-    let name = process.or(own.map(|f| f.process.as_str())).unwrap_or(DEFAULT_PROCESS);
-    let wrong = |e: weavelock_fab::process::ProcessError| Trouble::Word(format!("error: {e}"));
-    let overrides = own.map(|f| Overrides {
-        clearance: f.clearance_mm,
-        // The spec's shares are fractions, a process speaks of per cent.
-        shrinkage: f.shrinkage.iter().map(|(step, s)| (step.clone(), s * 100.0)).collect(),
-    });
-    let process = Process::find(name).map_err(wrong)?.with(&overrides.unwrap_or_default()).map_err(wrong)?;
-    let programs = (checkers == Checkers::Installed).then(Programs::default);
-    let recipe = Recipe { programs, ..Recipe::new(process) };
+/// The parts alone, without a package around them.
+pub fn made(placed: &Placed, out: &Path) -> Result<Report, Trouble> {
+    let recipe = recipe(placed, &Wish::default(), Checkers::None)?;
     make::make(&fabricate::job(&placed.joined), &recipe, out)
         .map_err(|e| Trouble::Word(format!("error: {e}")))
+}
+
+/// What the command line asks for beyond the spec.
+#[derive(Default)]
+pub struct Wish {
+    pub process: Option<String>,
+    pub parts: Vec<(String, String)>,
+    pub own: Overrides,
+}
+
+/// The recipe of a spec and a wish: processes found, the user's figures put into each that has the step.
+pub fn recipe(placed: &Placed, wish: &Wish, checkers: Checkers) -> Result<Recipe, Trouble> {
+    let spec = placed.spec.fab.as_ref();
+    let beside = placed.spec.file.parent().unwrap_or(Path::new(""));
+    let from_spec = |name: &str| match name.ends_with(".toml") {
+        true => beside.join(name).display().to_string(),
+        false => name.to_string(),
+    };
+    let main = wish.process.clone().or(spec.map(|f| from_spec(&f.process))).unwrap_or(DEFAULT_PROCESS.into());
+    let mut names: BTreeMap<String, String> =
+        spec.map(|f| f.parts.iter().map(|(id, n)| (id.clone(), from_spec(n))).collect()).unwrap_or_default();
+    names.extend(wish.parts.iter().cloned());
+    let own = overrides(spec, &wish.own);
+    let mut faults = Vec::new();
+    let mut find = |name: &str| Process::find(name).map_err(|e| faults.push(e.to_string())).ok();
+    let main = find(&main);
+    let parts: BTreeMap<String, Option<Process>> = names.into_iter().map(|(id, n)| (id, find(&n))).collect();
+    let (Some(main), true) = (main, parts.values().all(Option::is_some)) else {
+        return Err(all_faults(faults));
+    };
+    let parts: BTreeMap<String, Process> = parts.into_iter().filter_map(|(id, p)| Some((id, p?))).collect();
+    let used: Vec<&Process> = std::iter::once(&main).chain(parts.values()).collect();
+    faults.extend(steps_of_none(&own, &used));
+    let mut with = |p: &Process| p.with(&for_its_steps(&own, p)).map_err(|e| faults.push(e.to_string())).ok();
+    let main = with(&main);
+    let parts = parts.iter().map(|(id, p)| Some((id.clone(), with(p)?))).collect::<Option<BTreeMap<_, _>>>();
+    let (Some(process), Some(parts), true) = (main, parts, faults.is_empty()) else {
+        return Err(all_faults(faults));
+    };
+    let programs = (checkers == Checkers::Installed).then(Programs::default);
+    Ok(Recipe { programs, parts, ..Recipe::new(process) })
+}
+
+fn all_faults(mut faults: Vec<String>) -> Trouble {
+    let mut seen = std::collections::BTreeSet::new();
+    faults.retain(|f| seen.insert(f.clone()));
+    Trouble::Word(format!("error: {}", faults.join("\n")))
+}
+
+/// The spec's figures and the command line's over them.
+fn overrides(spec: Option<&FabSpec>, wish: &Overrides) -> Overrides {
+    // The spec's shares are fractions, a process speaks of per cent.
+    let shrinkage = spec.map(|f| f.shrinkage.iter().map(|(step, s)| (step.clone(), s * 100.0)).collect());
+    Overrides {
+        clearance: wish.clearance.or(spec.and_then(|f| f.clearance_mm)),
+        shrinkage: shrinkage.unwrap_or_default(),
+        measured: wish.measured.clone(),
+        bed: wish.bed.clone().or(spec.and_then(|f| f.bed.clone())),
+        elephant_foot: wish.elephant_foot.or(spec.and_then(|f| f.elephant_foot_mm)),
+        flatten: wish.flatten.or(spec.and_then(|f| f.flatten_mm)),
+    }
+}
+
+fn has(process: &Process, step: &str) -> bool {
+    process.steps.iter().any(|s| s.name == step)
+}
+
+/// Figures of a step hold for every process that has it.
+fn for_its_steps(own: &Overrides, process: &Process) -> Overrides {
+    let mut own = own.clone();
+    own.shrinkage.retain(|step, _| has(process, step));
+    own.measured.retain(|m| has(process, &m.step));
+    own
+}
+
+fn steps_of_none(own: &Overrides, used: &[&Process]) -> Vec<String> {
+    let steps = own.shrinkage.keys().chain(own.measured.iter().map(|m| &m.step));
+    let known: std::collections::BTreeSet<&str> =
+        used.iter().flat_map(|p| p.steps.iter().map(|s| s.name.as_str())).collect();
+    let known_text = known.iter().copied().collect::<Vec<_>>().join(", ");
+    let none = steps.filter(|s| !known.contains(s.as_str()));
+    none.map(|s| format!("shrinkage is given for a step {s:?} that no process in use has\n  hint: their steps: {known_text}"))
+        .collect()
 }
 
 pub fn told_fab(report: &Report, out: &Path) -> Told {
     let news = News::of(report.worst() != Some(Severity::Error));
     let answer = FabAnswer { verb: "fab", report };
-    let chapter = fab_chapter(report, out);
-    Told {
-        remarks: vec![report.molds_note.clone()],
-        ..Told::new(news, &answer, &report.name, "Parts as made", chapter)
-    }
+    Told::new(news, &answer, &report.name, "Parts as made", fab_chapter(report, out))
 }
 
 pub fn fab_chapter(report: &Report, out: &Path) -> Chapter {
@@ -101,14 +162,7 @@ pub fn fab_chapter(report: &Report, out: &Path) -> Chapter {
         Column::numbers("mass g"),
         Column::words("watertight"),
     ];
-    let mut facts = vec![
-        ("process".to_string(), report.process.clone()),
-        (
-            "clearance".into(),
-            format!("{} mm for each face, fit {} mm", report.clearance.value, report.fit_mm),
-        ),
-        ("scale of the master".into(), format!("{:.5}", report.scale)),
-    ];
+    let mut facts: Vec<(String, String)> = report.routes.iter().map(route_fact).collect();
     if least.is_finite() {
         facts.push((
             "least gap measured".into(),
@@ -124,6 +178,12 @@ pub fn fab_chapter(report: &Report, out: &Path) -> Chapter {
         rows: report.parts.iter().map(row).collect(),
     }];
     Chapter { tone, headline, words, facts, tables, ..Chapter::default() }
+}
+
+fn route_fact(r: &RouteReport) -> (String, String) {
+    let parts = if r.parts.len() == 1 { r.parts[0].clone() } else { format!("{} parts", r.parts.len()) };
+    let said = format!("{parts}, {} mm of air on each face, scale {:.5}", r.process.clearance.value, r.scale);
+    (r.process.name.clone(), said)
 }
 
 /// How the master came to its scale.

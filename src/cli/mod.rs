@@ -4,10 +4,18 @@
 
 pub mod args;
 pub mod atlas;
+mod blocking;
+mod check;
+pub mod flex;
 mod hands;
+mod interlock;
 mod load;
 mod make;
+mod package;
+mod pictured;
 mod questions;
+mod repeated;
+pub mod repeats;
 mod run;
 mod schema;
 mod told;
@@ -42,17 +50,19 @@ fn dispatch(args: &Args) -> Result<Told, Trouble> {
     match &args.verb {
         None => run::example(&args.common),
         Some(Verb::Run { file, out }) => run::file(file, out, &args.common),
-        Some(Verb::Check { file, fix }) => questions::check(&load::spec(file)?.joined()?, fix.as_deref()),
+        Some(Verb::Check { file, fix, refine }) => {
+            check::check(&load::spec(file)?.joined()?, fix.as_deref(), *refine)
+        }
         Some(Verb::Plan { file, of, clearance }) => {
             questions::plan(&load::spec(file)?.joined()?, of, clearance.unwrap_or(0.0))
         }
-        Some(Verb::Flex { file }) => questions::flex(&load::spec(file)?.joined()?),
-        Some(Verb::Repeats(asked)) => questions::repeats(asked),
+        Some(Verb::Blocking(asked)) => blocking::blocking(&load::spec(&asked.file)?.joined()?, asked),
+        Some(Verb::Flex(asked)) => flex::flex(asked),
+        Some(Verb::Repeats(asked)) => repeats::repeats(asked),
         Some(Verb::Chirality { subject, export }) => hands::chirality(subject, export.as_deref()),
         Some(Verb::Weave { subject, svg, wif }) => questions::weave(subject, svg.as_deref(), wif.as_deref()),
-        Some(Verb::Fab { file, process, out, check }) => {
-            make::fab(&load::spec(file)?.joined()?, process.as_deref(), out, make::Checkers::of(*check))
-        }
+        Some(Verb::Fab(asked)) => package::fab(&load::spec(&asked.file)?.joined()?, asked, &args.common),
+        Some(Verb::Processes { name }) => package::processes(name.as_deref()),
         Some(Verb::Export { file, format, layout, out }) => {
             make::export(&load::spec(file)?.joined()?, *format, *layout, out)
         }

@@ -2,45 +2,24 @@
 //!
 //! Not promised: anything beyond what the stage that answers promises.
 
-use super::args::Repeats;
 use super::load::{self, Placed};
 use super::told::{News, Told, Trouble};
 use super::words;
 use crate::assembly::PartIx;
 use crate::contact::Joined;
 use crate::fault::Fault;
-use crate::flex as flexible;
 use crate::input;
-use crate::locking::{self, Check, Verdict};
-use crate::repeats::{self, Search};
-use crate::report::answer::{self, Certificate, FlexAnswer, PlanAnswer, RepeatsAnswer, Sealed};
+use crate::locking::{self, Verdict};
+use crate::report::answer::{self, Certificate, PlanAnswer, Sealed};
 use crate::report::file::write_whole;
 use crate::report::words as chapters;
 use crate::sequence::clearance::with_clearance;
 use crate::sequence::{self, Outcome, Plan, Searched};
-use crate::spec::{self, Bounds, ProfileSpec, Shape};
 use crate::verify;
 use crate::weave::{self, Weave};
 use std::path::Path;
 
-pub fn check(placed: &Placed, fix: Option<&str>) -> Result<Told, Trouble> {
-    let joined = &placed.joined;
-    let fix = fix.map(|id| part(joined, id)).transpose()?;
-    let check = locking::check(&joined.assembly, &joined.patches, fix);
-    Ok(told_check(placed, &check))
-}
-
-pub fn told_check(placed: &Placed, check: &Check) -> Told {
-    let answer = answer::check(&placed.joined, check, placed.source.clone());
-    let news = News::of(matches!(check.rigid, Verdict::Locked(_)));
-    let chapter = chapters::verdict(&placed.joined.assembly, check);
-    Told {
-        remarks: answer.remarks.clone(),
-        ..Told::new(news, &answer, &answer.name, "Does it lock?", chapter)
-    }
-}
-
-fn part(joined: &Joined, id: &str) -> Result<PartIx, Trouble> {
+pub fn part(joined: &Joined, id: &str) -> Result<PartIx, Trouble> {
     let asm = &joined.assembly;
     let all = || asm.parts.iter().map(|p| p.id.as_str()).take(12).collect::<Vec<_>>().join(", ");
     asm.ids().find(|&p| asm.part(p).id == id).ok_or_else(|| {
@@ -49,7 +28,7 @@ fn part(joined: &Joined, id: &str) -> Result<PartIx, Trouble> {
 }
 
 /// What is wrong with an argument.
-fn argument(what: String, hint: String) -> Fault {
+pub fn argument(what: String, hint: String) -> Fault {
     Fault { file: String::new(), place: None, key: String::new(), what, hint }
 }
 
@@ -82,7 +61,7 @@ fn nothing() -> Plan<Certificate> {
     }
 }
 
-fn locked(joined: &Joined, set: &[PartIx]) -> Option<Certificate> {
+pub fn locked(joined: &Joined, set: &[PartIx]) -> Option<Certificate> {
     let (asm, patches) = (&joined.assembly, &joined.patches);
     let Verdict::Locked(stress) = locking::check_some(asm, patches, set) else { return None };
     let held: Vec<PartIx> = asm.held().filter(|p| set.contains(p)).collect();
@@ -113,67 +92,6 @@ pub fn told_plan(placed: &Placed, answer: &PlanAnswer) -> Told {
     }
 }
 
-pub fn flexed(placed: &Placed) -> Result<FlexAnswer, Trouble> {
-    let found = flexible::flex(&placed.joined.assembly, &placed.joined.patches);
-    let found = found.map_err(|why| Trouble::Word(format!("error: not searched: {why}\n  hint: flexible parts are found by plans, and plans need parts made of convex cells")))?;
-    Ok(answer::flex(&placed.joined, &found, placed.source.clone()))
-}
-
-pub fn flex(placed: &Placed) -> Result<Told, Trouble> {
-    Ok(told_flex(&flexed(placed)?))
-}
-
-pub fn told_flex(answer: &FlexAnswer) -> Told {
-    let news = News::of(answer.minimum.is_some());
-    let chapter = words::flex(answer);
-    Told {
-        remarks: answer.remarks.clone(),
-        ..Told::new(news, answer, &answer.name, "Flexible parts", chapter)
-    }
-}
-
-pub fn repeats(asked: &Repeats) -> Result<Told, Trouble> {
-    let weave = load::weave(&asked.weave)?;
-    let profile = profile(asked.rise, asked.lift, asked.cover, asked.samples)?;
-    let search = Search {
-        wefts: asked.wefts.unwrap_or(weave.tile.0),
-        warps: asked.warps.unwrap_or(weave.tile.0),
-        phases: asked.phase.clone(),
-        most: asked.most,
-    };
-    Ok(told_repeats(&repeated(&weave, &asked.weave, &profile, &search)?))
-}
-
-pub fn repeated(
-    weave: &Weave,
-    name: &str,
-    profile: &ProfileSpec,
-    search: &Search,
-) -> Result<RepeatsAnswer, Trouble> {
-    let found = repeats::repeats(weave, profile, search)?;
-    Ok(answer::repeats(name, &found, load::falls_apart(weave).into_iter().collect()))
-}
-
-pub fn told_repeats(answer: &RepeatsAnswer) -> Told {
-    let news = News::of(answer.minimal_repeat.is_some());
-    let chapter = words::repeats(answer);
-    Told { remarks: answer.remarks.clone(), ..Told::new(news, answer, &answer.weave, "Repetition", chapter) }
-}
-
-/// The profile of the flags, held to the same bounds as a spec's.
-pub fn profile(rise: f64, lift: f64, cover: f64, samples: u32) -> Result<ProfileSpec, Trouble> {
-    let text = format!(
-        "[weave]\nabc = [1, 1, 1]\n[profile]\nrise = {rise:?}\nlift = {lift:?}\ncover = {cover:?}\nsamples = {samples}\n[swatch]\nwefts = 2\nwarps = 2\ncut = \"window\"\n[size]\npitch = \"1 mm\"\n"
-    );
-    let spec = spec::parse(&text, Path::new("(flags)"), spec::Syntax::Toml)?;
-    match spec.subject {
-        spec::Subject::Woven(woven) => Ok(woven.profile),
-        spec::Subject::Meshes(_) => {
-            Ok(ProfileSpec { shape: Shape::Rise(rise), lift, cover, samples, bounds: Bounds::Sandwich })
-        }
-    }
-}
-
 pub fn weave(subject: &str, svg: Option<&Path>, wif: Option<&Path>) -> Result<Told, Trouble> {
     let weave = load::weave(subject)?;
     if let Some(path) = svg {
@@ -197,7 +115,9 @@ pub fn told_weave(weave: &Weave, name: &str) -> Told {
 pub fn verify(file: &Path) -> Result<Told, Trouble> {
     let text = input::text(input::answer_bytes(file)?, file)?;
     let sealed: Sealed = serde_json::from_str(&text).map_err(|e| {
-        let hint = "give the JSON that `weavelock check --json` or `plan --json` printed".to_string();
+        let hint =
+            "give the JSON that `weavelock` printed with --json for `check`, `plan`, `repeats` or `flex`"
+                .to_string();
         Fault {
             file: file.display().to_string(),
             place: None,

@@ -3,10 +3,13 @@
 //! Not promised: that a question which failed stops the others; it is told as not run, with the reason.
 
 use super::args::Common;
+use super::check;
+use super::flex;
 use super::hands;
 use super::load::{self, Loaded, Placed};
-use super::make::{self, Checkers};
+use super::make;
 use super::questions;
+use super::repeats;
 use super::told::{News, Told, Trouble};
 use super::words;
 use crate::assembly::PartIx;
@@ -76,13 +79,13 @@ fn ask(placed: &Placed, common: &Common) -> Result<Asked, Trouble> {
     progress("is it locked");
     let check = placed.check();
     let pictures = pictures(placed, &check)?;
-    let check = questions::told_check(placed, &check);
+    let check = check::told(placed, &check, None);
     progress("how does it go together");
     let all: Vec<PartIx> = asm.ids().collect();
     let plan = questions::told_plan(placed, &questions::planned(placed, &all, 0.0));
     progress("does it need a flexible part");
     let flex = if asm.parts.len() <= MOST_PARTS_FOR_FLEX {
-        questions::flexed(placed).map(|a| questions::told_flex(&a)).map_err(|t| t.to_string())
+        flex::flexed(placed, &flex::Settings::default()).map(|a| flex::told(&a)).map_err(|t| t.to_string())
     } else {
         Err(format!("not searched for more than {MOST_PARTS_FOR_FLEX} parts in a run; `weavelock flex` does"))
     };
@@ -105,9 +108,9 @@ fn woven(placed: &Placed, progress: &impl Fn(&str)) -> Result<Woven, Trouble> {
         _ => 0,
     };
     let n = woven.weave.tile;
-    let search = Search { wefts: n.0, warps: n.0, phases: vec![phase], most: MOST_REPEATS };
-    let repeats = questions::repeated(&woven.weave, &name(&woven.weave), &woven.profile, &search);
-    let repeats = repeats.map(|a| questions::told_repeats(&a)).map_err(|t| t.to_string());
+    let search = Search { wefts: n.1, warps: n.0, phases: vec![phase], most: MOST_REPEATS };
+    let repeats = repeats::repeated(&woven.weave, &name(&woven.weave), &woven.profile, &search);
+    let repeats = repeats.map(|a| repeats::told(&a)).map_err(|t| t.to_string());
     let chirality = hands::told_chirality(placed).map_err(|t| t.to_string());
     Ok((Some(weave), repeats, chirality))
 }
@@ -147,7 +150,7 @@ fn everything(loaded: Loaded, out: &Path, common: &Common) -> Result<Told, Troub
         eprintln!("making the parts ...");
     }
     let folder = out.join("parts");
-    let made = make::made(&placed, None, &folder, Checkers::None)?;
+    let made = make::made(&placed, &folder)?;
     let fab = make::told_fab(&made, &folder);
     let mut files = vec![folder.display().to_string()];
     let mut keep = |name: &str, bytes: &[u8]| -> Result<(), Trouble> {
@@ -213,10 +216,10 @@ fn chapter(told: &Result<Told, String>) -> Answer<Chapter> {
 
 /// What is not built; said wherever a whole run is told.
 const LIMITS: [&str; 4] = [
-    "Molds, castings and their sheets are not built yet; parts with clearance and allowance are.",
+    "A run makes the parts alone; `weavelock fab` makes the package with plates, sheets and coupon. Molds are not built yet.",
     "Plans are straight moves of parts and groups; turns and moves in several stretches are not searched.",
     "Locked is first order at zero clearance; the least clearance that opens a lock is not searched for yet.",
-    "The tiles are those of the sampled sites; a certificate is not yet held against the curved bisectors.",
+    "The tiles are those of the sampled sites; the check says whether its verdict holds for the curved bisectors too.",
 ];
 
 fn input(placed: &Placed, asked: &Asked, parts: Answer<Chapter>, ledger: Answer<Chapter>) -> PageInput {
@@ -314,5 +317,6 @@ fn summary(
         chapters,
         closing,
         remarks: asked.remarks,
+        bare: None,
     }
 }

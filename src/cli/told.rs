@@ -32,6 +32,8 @@ pub struct Told {
     pub chapters: Vec<(String, Answer<Chapter>)>,
     pub closing: Vec<String>,
     pub remarks: Vec<String>,
+    /// Printed instead of all that, where the answer is a file to keep.
+    pub bare: Option<String>,
 }
 
 impl Told {
@@ -44,10 +46,14 @@ impl Told {
             chapters: vec![(heading.into(), Answer::Given(chapter))],
             closing: Vec::new(),
             remarks: Vec::new(),
+            bare: None,
         }
     }
 
     pub fn text(&self) -> String {
+        if let Some(text) = &self.bare {
+            return text.clone();
+        }
         let summary = Summary {
             title: self.title.clone(),
             lead: self.lead.clone(),

@@ -79,10 +79,11 @@ fn part<'t>(reader: &mut Reader<'t>, item: &Field<'t>) -> Option<MeshPartSpec> {
     };
     let at = match reader.get(&fields, "at") {
         Some(field) => pose(reader, &field),
-        None => Some(DAffine3::IDENTITY),
+        None => Some((DAffine3::IDENTITY, 0.0)),
     };
     let path = reader.file.parent().unwrap_or(Path::new("")).join(mesh?.0);
-    Some(MeshPartSpec { id: id?, mesh: path, held: held?, at: at? })
+    let (at, turn) = at?;
+    Some(MeshPartSpec { id: id?, mesh: path, held: held?, at, turn })
 }
 
 fn mesh<'t>(reader: &mut Reader<'t>, field: &Field<'t>) -> Option<PathBuf> {
@@ -96,7 +97,8 @@ fn mesh<'t>(reader: &mut Reader<'t>, field: &Field<'t>) -> Option<PathBuf> {
     None
 }
 
-fn pose<'t>(reader: &mut Reader<'t>, field: &Field<'t>) -> Option<DAffine3> {
+/// The pose, and by how much it may be turned from the one that was meant.
+fn pose<'t>(reader: &mut Reader<'t>, field: &Field<'t>) -> Option<(DAffine3, f64)> {
     let hint = "twelve numbers, row by row: each row of the rotation, then its part of the translation";
     let items = reader.list(field, hint)?;
     if items.len() != 12 {
@@ -124,7 +126,21 @@ fn pose<'t>(reader: &mut Reader<'t>, field: &Field<'t>) -> Option<DAffine3> {
         );
         return None;
     }
-    Some(DAffine3::from_mat3_translation(nearest_rotation(rotation), DVec3::new(m[3], m[7], m[11])))
+    let pose = DAffine3::from_mat3_translation(nearest_rotation(rotation), DVec3::new(m[3], m[7], m[11]));
+    Some((pose, turn(rotation)))
+}
+
+/// By how much a rotation written in decimals may be turned, in radians: each of nine entries is off by half a unit in
+/// the last place, by Frobenius' norm three of them. One that is a rotation to the last bit is meant as it is.
+fn turn(rotation: DMat3) -> f64 {
+    let finest =
+        rotation.to_cols_array().iter().map(|x| format!("{x}")).map(|s| decimals(&s)).max().unwrap_or(0);
+    let exact = rotation.transpose() * rotation == DMat3::IDENTITY;
+    if exact { 0.0 } else { 1.5 * 10f64.powi(-finest) }
+}
+
+fn decimals(numeral: &str) -> i32 {
+    numeral.split_once('.').map_or(0, |(_, d)| d.len() as i32)
 }
 
 /// The rotation nearest to a matrix within [`POSE_ERROR`] of one. Each step of Newton's iteration for the polar factor

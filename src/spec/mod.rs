@@ -167,6 +167,8 @@ pub struct MeshPartSpec {
     pub held: Mobility,
     /// Proper rigid motion, translation in the file's unit.
     pub at: DAffine3,
+    /// By how much the pose may be turned from the one that was meant, as far as its digits tell, in radians.
+    pub turn: f64,
 }
 
 /// How the parts are to be made.
@@ -178,4 +180,12 @@ pub struct FabSpec {
     pub clearance_mm: Option<f64>,
     /// Step of the process to its linear shrinkage as a fraction, overriding the process.
     pub shrinkage: BTreeMap<String, f64>,
+    /// Parts made by another process: id to its name.
+    pub parts: BTreeMap<String, String>,
+    /// A bed's name or size, overriding the process.
+    pub bed: Option<String>,
+    /// Chamfer around the print face, overriding the process.
+    pub elephant_foot_mm: Option<f64>,
+    /// Cut off below, overriding the process.
+    pub flatten_mm: Option<f64>,
 }

@@ -58,7 +58,7 @@ const WOVEN_KEYS: [&str; 8] = ["name", "weave", "profile", "swatch", "piece", "h
 const MESH_KEYS: [&str; 5] = ["name", "part", "contact", "size", "fab"];
 
 /// Keys that someone may write outside of their table.
-const HOMES: [(&str, &str); 27] = [
+const HOMES: [(&str, &str); 30] = [
     ("held", "`held` stands in [swatch], in a [[piece]] or [[part]], or at the top before the first table"),
     ("abc", "`abc` belongs in [weave]"),
     ("draft", "`draft` belongs in [weave]"),
@@ -86,6 +86,9 @@ const HOMES: [(&str, &str); 27] = [
     ("process", "`process` belongs in [fab]"),
     ("clearance", "`clearance` belongs in [fab]"),
     ("shrinkage", "`shrinkage` belongs in [fab]"),
+    ("bed", "`bed` belongs in [fab]"),
+    ("elephant_foot", "`elephant_foot` belongs in [fab]"),
+    ("flatten", "`flatten` belongs in [fab]"),
 ];
 
 /// Where a key belongs that is unknown where it stands.
@@ -170,7 +173,11 @@ const MAX_CLEARANCE_MM: f64 = 10_000.0;
 /// `width`: of a strand, in mm, where strands are what is made.
 fn fab<'t>(reader: &mut Reader<'t>, field: &Field<'t>, width: Option<f64>) -> Option<FabSpec> {
     let fields = reader.table(field)?;
-    reader.only(&fields, &["process", "clearance", "shrinkage"], home);
+    reader.only(
+        &fields,
+        &["process", "clearance", "shrinkage", "parts", "bed", "elephant_foot", "flatten"],
+        home,
+    );
     let process = match reader.get(&fields, "process") {
         Some(field) => process(reader, &field),
         None => reader.lacks(&fields, "process", "is missing", "name a process, as in process = \"fdm-pla\""),
@@ -184,7 +191,58 @@ fn fab<'t>(reader: &mut Reader<'t>, field: &Field<'t>, width: Option<f64>) -> Op
         Some(read) => Some(read?),
         None => None,
     };
-    Some(FabSpec { process: process?, clearance_mm, shrinkage: shrinkage? })
+    let parts = match reader.get(&fields, "parts") {
+        Some(field) => part_processes(reader, &field),
+        None => Some(BTreeMap::new()),
+    };
+    let bed = match reader.get(&fields, "bed") {
+        Some(field) => Some(reader.text(&field, "a bed's name, or \"250 x 210 x 220 mm\"")?.to_string()),
+        None => None,
+    };
+    let [elephant_foot_mm, flatten_mm] =
+        ["elephant_foot", "flatten"].map(|key| shaving(reader, &fields, key));
+    Some(FabSpec {
+        process: process?,
+        clearance_mm,
+        shrinkage: shrinkage?,
+        parts: parts?,
+        bed,
+        elephant_foot_mm: elephant_foot_mm?,
+        flatten_mm: flatten_mm?,
+    })
+}
+
+/// More than this, in mm, taken off a print face is another part.
+const MAX_SHAVING_MM: f64 = 2.0;
+
+/// `Some(None)` where it is not asked for.
+fn shaving<'t>(reader: &mut Reader<'t>, fields: &Fields<'t>, key: &str) -> Option<Option<f64>> {
+    match reader.get(fields, key) {
+        Some(field) => {
+            reader.length(&field, 0.0..=MAX_SHAVING_MM, "it is taken off the print face").map(Some)
+        }
+        None => Some(None),
+    }
+}
+
+/// Parts that may have a process of their own; a swatch has as many at most.
+const MAX_NAMED_PARTS: usize = 100_000;
+
+fn part_processes<'t>(reader: &mut Reader<'t>, field: &Field<'t>) -> Option<BTreeMap<String, String>> {
+    let fields = reader.table(field)?;
+    if fields.keys().count() > MAX_NAMED_PARTS {
+        reader.fault(field, format!("names more than {MAX_NAMED_PARTS} parts"), "an id and its process each");
+        return None;
+    }
+    let mut all = Some(BTreeMap::new());
+    for id in fields.keys() {
+        let name = reader.get(&fields, id).and_then(|field| process(reader, &field));
+        all = all.zip(name).map(|(mut all, name)| {
+            all.insert(id.to_string(), name);
+            all
+        });
+    }
+    all
 }
 
 fn process<'t>(reader: &mut Reader<'t>, field: &Field<'t>) -> Option<String> {

@@ -16,7 +16,7 @@ use schemars::JsonSchema;
 #[serde(untagged)]
 pub enum SpecFile {
     Woven(Box<WovenFile>),
-    Meshes(MeshesFile),
+    Meshes(Box<MeshesFile>),
 }
 
 #[derive(JsonSchema)]
@@ -143,4 +143,12 @@ struct FabTable {
     process: Option<String>,
     clearance: Option<String>,
     shrinkage: Option<std::collections::BTreeMap<String, String>>,
+    /// Processes of single parts, by id.
+    parts: Option<std::collections::BTreeMap<String, String>>,
+    /// A bed by name, or as "250 x 210 x 220 mm".
+    bed: Option<String>,
+    /// Chamfer around the print face, as "0.3 mm".
+    elephant_foot: Option<String>,
+    /// Cut off below, as "0.2 mm".
+    flatten: Option<String>,
 }

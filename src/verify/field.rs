@@ -52,10 +52,15 @@ fn reduce(v: u64) -> u64 {
 
 /// Rank over the field, by elimination; stops as soon as it is full.
 pub fn rank(rows: impl Iterator<Item = Vec<Residue>>, columns: usize) -> usize {
+    independent(rows, columns).len()
+}
+
+/// Which rows are independent of those before them, over the field; stops as soon as the rank is full.
+pub fn independent(rows: impl Iterator<Item = Vec<Residue>>, columns: usize) -> Vec<usize> {
     // A reduced row for each pivot column, leading coefficient 1.
     let mut basis: Vec<Option<Vec<Residue>>> = vec![None; columns];
-    let mut rank = 0;
-    for mut row in rows {
+    let mut chosen = Vec::new();
+    for (k, mut row) in rows.enumerate() {
         for c in 0..columns {
             if row[c] == ZERO {
                 continue;
@@ -66,15 +71,15 @@ pub fn rank(rows: impl Iterator<Item = Vec<Residue>>, columns: usize) -> usize {
             } else {
                 let by = row[c].inverse();
                 basis[c] = Some(row.iter().map(|v| v.times(by)).collect());
-                rank += 1;
+                chosen.push(k);
                 break;
             }
         }
-        if rank == columns {
+        if chosen.len() == columns {
             break;
         }
     }
-    rank
+    chosen
 }
 
 #[cfg(test)]

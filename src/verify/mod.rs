@@ -4,19 +4,30 @@
 //! Not promised: that the spec is the one its reader meant.
 
 pub mod certificate;
+mod dyadic;
 mod field;
+mod flex;
+mod interlock;
+mod mend;
+mod motion;
+mod number;
+mod order;
 pub mod plan;
+mod repeats;
+mod singular;
+mod stress;
 
 use crate::assembly::{Assembly, PartIx};
 use crate::contact::{self, Joined};
 use crate::fault::Faults;
-use crate::report::answer::{self, CheckAnswer, PlanAnswer, Sealed, Source};
+use crate::report::answer::{self, CheckAnswer, PlanAnswer, Sealed};
 use crate::sequence::Outcome;
 use crate::sequence::clearance::with_clearance;
 use crate::spec::{self, Syntax};
-use certificate::About;
+use certificate::{About, Arithmetic, Shown};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 use std::path::Path;
 
 /// Answer of `verify`.
@@ -25,6 +36,10 @@ pub struct Verified {
     pub verb: String,
     pub valid: bool,
     pub why: String,
+    /// What the proofs were found true for: the weakest of them; null where one is refused.
+    pub arithmetic: Option<Arithmetic>,
+    /// Every proof that holds, by what it is about: `rigid`, `translation`, or a lock that a plan quotes.
+    pub proofs: BTreeMap<String, Shown>,
 }
 
 /// Reads the spec of an answer again and holds the answer against it.
@@ -32,15 +47,36 @@ pub fn answer(sealed: &Sealed) -> Result<Verified, Faults> {
     let source = match sealed {
         Sealed::Check(a) => &a.source,
         Sealed::Plan(a) => &a.source,
+        Sealed::Flex(a) => return flex::answer(a),
+        Sealed::Repeats(a) => return repeats::answer(a),
     };
-    let joined = rebuild(source)?;
+    let file = Path::new(&source.file);
+    let spec = spec::parse(&source.text, file, Syntax::of(file, &source.text))?;
+    let joined = contact::join(&spec)?;
     let (found, good) = match sealed {
-        Sealed::Check(a) => (check(&joined, a), format!("the {} verdict and its proofs hold", word(a))),
+        Sealed::Check(a) => {
+            (check(&spec, &joined, a), format!("the {} verdict and its proofs hold", word(a)))
+        }
         Sealed::Plan(a) => (plan(&joined, a), "every move and every proof of the plan holds".to_string()),
+        Sealed::Flex(_) | Sealed::Repeats(_) => (Ok(Proofs::new()), String::new()),
     };
-    let (valid, why) = found.map_or_else(|why| (false, why), |()| (true, good));
-    Ok(Verified { verb: "verify".into(), valid, why })
+    Ok(verified(found, good))
 }
+
+/// The assembly of an answer, built again.
+fn rebuild(source: &answer::Source) -> Result<Joined, Faults> {
+    let file = Path::new(&source.file);
+    contact::join(&spec::parse(&source.text, file, Syntax::of(file, &source.text))?)
+}
+
+fn verified(found: Result<Proofs, String>, good: String) -> Verified {
+    let (valid, why, proofs) =
+        found.map_or_else(|why| (false, why, BTreeMap::new()), |proofs| (true, good, proofs));
+    let arithmetic = proofs.values().map(|p| p.arithmetic).max();
+    Verified { verb: "verify".into(), valid, why, arithmetic, proofs }
+}
+
+type Proofs = BTreeMap<String, Shown>;
 
 fn word(a: &CheckAnswer) -> &'static str {
     match a.rigid.verdict {
@@ -50,12 +86,7 @@ fn word(a: &CheckAnswer) -> &'static str {
     }
 }
 
-fn rebuild(source: &Source) -> Result<Joined, Faults> {
-    let file = Path::new(&source.file);
-    contact::join(&spec::parse(&source.text, file, Syntax::of(file, &source.text))?)
-}
-
-fn check(joined: &Joined, a: &CheckAnswer) -> Result<(), String> {
+fn check(spec: &spec::Spec, joined: &Joined, a: &CheckAnswer) -> Result<Proofs, String> {
     sealed(&a.checksum, &CheckAnswer { checksum: String::new(), ..a.clone() })?;
     let asm = &joined.assembly;
     let rows = joined.patches.iter().map(|p| p.corners.len()).sum::<usize>();
@@ -71,12 +102,39 @@ fn check(joined: &Joined, a: &CheckAnswer) -> Result<(), String> {
         (None, false) => held,
         _ => return Err("a part is fixed exactly where none is held".into()),
     };
-    certificate::proof(asm, &joined.patches, &a.rigid, &still, About::RigidMotions)?;
-    certificate::proof(asm, &joined.patches, &a.translation_proof, &still, About::Translations)
-        .map_err(|why| format!("translations: {why}"))
+    let rigid = certificate::proof(asm, &joined.patches, &a.rigid, &still, About::RigidMotions)?;
+    let translation =
+        certificate::proof(asm, &joined.patches, &a.translation_proof, &still, About::Translations)
+            .map_err(|why| format!("translations: {why}"))?;
+    sampling(joined, a)?;
+    levels(spec, a)?;
+    interlock::claims(joined, a)?;
+    Ok(BTreeMap::from([("rigid".into(), rigid), ("translation".into(), translation)]))
 }
 
-fn plan(joined: &Joined, a: &PlanAnswer) -> Result<(), String> {
+/// Margins and chord errors are computed again, by the code that they came from: a change is noticed, and no more.
+fn sampling(joined: &Joined, a: &CheckAnswer) -> Result<(), String> {
+    let check = answer::check_of(&joined.assembly, a).ok_or("the answer names parts that are not there")?;
+    let found = crate::sampling::standing(joined, &check);
+    if found != a.sampling {
+        return Err("margin, chord error and what holds beyond the samples are not those found again".into());
+    }
+    Ok(())
+}
+
+/// The levels of a refinement, computed again.
+fn levels(spec: &spec::Spec, a: &CheckAnswer) -> Result<(), String> {
+    let Some(claimed) = &a.refine else { return Ok(()) };
+    let found = crate::sampling::refined(spec).map_err(|f| f.to_string())?;
+    if found == *claimed {
+        Ok(())
+    } else {
+        Err("the levels of the refinement are not those found again".into())
+    }
+}
+
+fn plan(joined: &Joined, a: &PlanAnswer) -> Result<Proofs, String> {
+    let mut proofs = Proofs::new();
     sealed(&a.checksum, &PlanAnswer { checksum: String::new(), ..a.clone() })?;
     same("verb", a.verb.as_str(), "plan")?;
     let parts = parts(joined, &a.of)?;
@@ -91,14 +149,14 @@ fn plan(joined: &Joined, a: &PlanAnswer) -> Result<(), String> {
     for stuck in &a.plan.stuck {
         if let Some(lock) = &stuck.lock {
             same("clearance of a lock", a.clearance_mm, 0.0)?;
-            locked_alone(joined, &stuck.parts, lock)?;
+            proofs.insert(stuck.parts.join(", "), locked_alone(joined, &stuck.parts, lock)?);
         }
     }
     let proven = a.plan.stuck.iter().any(|s| s.lock.is_some());
     match (a.plan.outcome, a.plan.stuck.is_empty(), proven) {
         (Outcome::Assembled, true, _)
         | (Outcome::NeedsFlexible, false, true)
-        | (Outcome::NotFound, false, false) => Ok(()),
+        | (Outcome::NotFound, false, false) => Ok(proofs),
         (outcome, ..) => Err(format!("the outcome {outcome:?} does not follow from what stayed together")),
     }
 }
@@ -113,7 +171,7 @@ fn as_made(joined: &Joined, clearance_mm: f64) -> Result<Assembly, String> {
 }
 
 /// The certificate is about these parts alone: all others are still, and contacts with them do not count.
-fn locked_alone(joined: &Joined, ids: &[String], lock: &answer::Certificate) -> Result<(), String> {
+fn locked_alone(joined: &Joined, ids: &[String], lock: &answer::Certificate) -> Result<Shown, String> {
     let asm = &joined.assembly;
     let inside = parts(joined, ids)?;
     let patches: Vec<_> =

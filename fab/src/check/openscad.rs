@@ -7,6 +7,7 @@ use super::run::{run, version};
 use super::{Check, Outcome, check};
 use crate::files::stl;
 use crate::mesh::Mesh;
+use crate::solid::Solid;
 use glam::DVec3;
 use rayon::prelude::*;
 use std::fs;
@@ -24,6 +25,13 @@ const VOLUME_TOLERANCE: f64 = 0.001;
 
 /// How far beyond the part the cube stands, in mm: enough that nothing of it is near.
 const ASIDE: f64 = 10.0;
+
+/// Two files that are looked at together, each with the factor that takes it to finished size.
+#[derive(Clone, Copy, Debug)]
+pub struct Pair<'a> {
+    pub files: [&'a Path; 2],
+    pub factors: [f64; 2],
+}
 
 /// OpenSCAD, its source written out. Dropping it removes the folder.
 pub struct OpenScad {
@@ -58,7 +66,7 @@ impl OpenScad {
     /// Whether OpenSCAD finds the volume (mm3) that we do. `high`: upper corner of the part's box.
     pub fn volume(&self, file: &Path, expected: f64, high: DVec3) -> Check {
         let verdict =
-            quoted(file).and_then(|f| self.gate(&format!("part={f}"), beyond(high))).and_then(|out| {
+            quoted(file).and_then(|f| self.gate(&[format!("part={f}")], beyond(high))).and_then(|out| {
                 let found = out.volume() - CUBE;
                 let off = (found - expected).abs() / expected.abs().max(f64::MIN_POSITIVE);
                 if off <= VOLUME_TOLERANCE {
@@ -73,23 +81,30 @@ impl OpenScad {
     ///
     /// Many pairs go into one run, where each part is read once; only where something comes out, or the run fails, is
     /// each pair of it asked about alone.
-    pub fn apart(&self, pairs: &[(&Path, &Path)], high: DVec3) -> Vec<Check> {
+    pub fn apart(&self, pairs: &[Pair], datum: DVec3, high: DVec3) -> Vec<Check> {
         let share = pairs.len().div_ceil(rayon::current_num_threads()).clamp(1, MOST_PAIRS);
-        let of_run = |pairs: &[(&Path, &Path)]| match self.share_nothing(pairs, high) {
+        let of_run = |pairs: &[Pair]| match self.share_nothing(pairs, datum, high) {
             Ok(()) => vec![Ok(()); pairs.len()],
             Err(why) if pairs.len() == 1 => vec![Err(why)],
-            Err(_) => pairs.iter().map(|p| self.share_nothing(std::slice::from_ref(p), high)).collect(),
+            Err(_) => {
+                pairs.iter().map(|p| self.share_nothing(std::slice::from_ref(p), datum, high)).collect()
+            }
         };
         let verdicts: Vec<_> = pairs.par_chunks(share).flat_map_iter(of_run).collect();
         verdicts.into_iter().map(|v| check(&self.name, "shares no volume", v)).collect()
     }
 
     /// All that comes out is the cube.
-    fn share_nothing(&self, pairs: &[(&Path, &Path)], high: DVec3) -> Result<(), Outcome> {
+    fn share_nothing(&self, pairs: &[Pair], datum: DVec3, high: DVec3) -> Result<(), Outcome> {
         let at = beyond(high);
-        let names = pairs.iter().map(|(a, b)| Ok(format!("[{},{}]", quoted(a)?, quoted(b)?)));
+        let names = pairs.iter().map(|p| {
+            let [a, b] = p.files;
+            let [s, t] = p.factors;
+            Ok(format!("[{},{},{s},{t}]", quoted(a)?, quoted(b)?))
+        });
         let names: Vec<String> = names.collect::<Result<_, Outcome>>()?;
-        let out = self.gate(&format!("pairs=[{}]", names.join(",")), at)?;
+        let datum = format!("datum=[{},{},{}]", datum.x, datum.y, datum.z);
+        let out = self.gate(&[format!("pairs=[{}]", names.join(",")), datum], at)?;
         let Some(shared) = out.vertices.iter().find(|v| v.cmplt(at).any()) else {
             let found = out.volume();
             return if (found - CUBE).abs() < VOLUME_TOLERANCE { Ok(()) } else { Err(no_cube(found)) };
@@ -99,14 +114,39 @@ impl OpenScad {
         Err(Outcome::Failed(format!("they share {volume:.6} mm3, at {place}")))
     }
 
-    fn gate(&self, what: &str, at: DVec3) -> Result<Mesh, Outcome> {
+    /// Whether a source, with a variable set, makes the solid that is in a file: the same volume, and nothing that only
+    /// one of the two has, both to [`VOLUME_TOLERANCE`]. `expected`: volume in the file, mm3.
+    pub fn same(&self, source: &Path, define: &str, file: &Path, expected: f64) -> Check {
+        let verdict = self.run(source, &[define.to_string()]).and_then(|theirs| {
+            let off = (theirs.volume() - expected).abs() / expected;
+            if off > VOLUME_TOLERANCE {
+                return Err(Outcome::Failed(format!(
+                    "it makes {:.3} mm3, ours is {expected:.3}",
+                    theirs.volume()
+                )));
+            }
+            let apart = differs(&theirs, file).map_err(Outcome::Failed)?;
+            if apart <= VOLUME_TOLERANCE * expected {
+                return Ok(());
+            }
+            Err(Outcome::Failed(format!("{apart:.3} mm3 are in one of the two solids only")))
+        });
+        check(&self.name, "makes the same solid from the source", verdict)
+    }
+
+    fn gate(&self, what: &[String], at: DVec3) -> Result<Mesh, Outcome> {
+        let cube = format!("at=[{},{},{}]", at.x, at.y, at.z);
+        self.run(&self.folder.join("gate.scad"), &[what, &[cube]].concat())
+    }
+
+    fn run(&self, source: &Path, defines: &[String]) -> Result<Mesh, Outcome> {
         let out = self.out();
         let mut arguments = ["--hardwarnings", "--export-format", "binstl", "-o"].map(String::from).to_vec();
         arguments.push(out.display().to_string());
-        for define in [what.to_string(), format!("at=[{},{},{}]", at.x, at.y, at.z)] {
-            arguments.extend(["-D".to_string(), define]);
+        for define in defines {
+            arguments.extend(["-D".to_string(), define.clone()]);
         }
-        arguments.push(self.folder.join("gate.scad").display().to_string());
+        arguments.push(source.display().to_string());
         let ran = run(&self.program, &arguments)?;
         let said = ran.all();
         let bad = said.lines().find(|l| ["ERROR", "WARNING", "EXPORT-"].iter().any(|w| l.starts_with(w)));
@@ -121,6 +161,16 @@ impl OpenScad {
     fn out(&self) -> PathBuf {
         self.folder.join(format!("{}.stl", self.runs.fetch_add(1, Ordering::Relaxed)))
     }
+}
+
+/// Volume that only one of two solids has, mm3.
+fn differs(theirs: &Mesh, file: &Path) -> Result<f64, String> {
+    let ours = fs::File::open(file).and_then(|mut f| stl::read(&mut f)).map_err(|e| e.to_string())?;
+    let (a, b) = (
+        Solid::of(theirs).map_err(|e| format!("its solid: {e}"))?,
+        Solid::of(&ours).map_err(|e| format!("ours: {e}"))?,
+    );
+    Ok(a.minus(&b).volume() + b.minus(&a).volume())
 }
 
 /// Pairs in one run: a dozen seconds of work for parts of two thousand triangles, and far from the time limit.

@@ -4,6 +4,8 @@
 //! kept one. First order: where facets bend by an angle t it lies up to about depth * t * t / 2 deeper. Not complete:
 //! shapes exist that it can not offset; it then says where, and the caller writes nothing.
 //!
+//! Where the whole of it fails, `carve` is the fallback of the caller.
+//!
 //! The steps: `body` moves corners, `weld` takes out edges too short to matter, `split` parts corners that have no one
 //! place, `settle` collapses what turned over, `relief` parts bodies that are still nearer than the fit.
 //!
@@ -14,6 +16,7 @@
 //! *Choosing the collapse that leaves the fewest turned triangles*: it likes long edges, and lost whole ridges.
 
 pub mod body;
+pub mod carve;
 pub mod least;
 pub mod relief;
 pub mod settle;
@@ -28,15 +31,18 @@ use rayon::prelude::*;
 use settle::Settled;
 use std::collections::BTreeMap;
 
-/// What the move is to reach, all in mm.
-#[derive(Clone, Copy, Debug)]
+/// What the move of a part is to reach, all in mm.
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Aim {
     /// How far contact facets go inward.
     pub depth: f64,
-    /// Bodies nearer than this are parted, to twice the depth; a little less than that, or round-off would be chased.
-    pub fit: f64,
+    /// The part's share of the fit: bodies nearer than the sum of theirs are parted to the sum of their depths; a
+    /// little less than those, or round-off would be chased.
+    pub share: f64,
     /// Least altitude of a triangle of the result.
     pub thinnest: f64,
+    /// Edges shorter than this are united before the move.
+    pub weld: f64,
 }
 
 /// A part with its contact facets moved inward, in place.
@@ -70,20 +76,22 @@ pub enum Why {
 
 /// Edges shorter than this part of the depth are united before the move: for 0.2 mm that is 4 micrometres, a tenth of
 /// the finest step that the printers at hand can make. What it costs in clearance, `relief` finds and mends.
-const REACH: f64 = 0.02;
+pub const REACH: f64 = 0.02;
 
-/// Moves the contact facets of every part inward and parts the bodies to the fit. Parts with the same shape and the
-/// same contact facets are moved once.
-pub fn offset(job: &Job, aim: &Aim) -> Vec<Offset> {
-    let contact = |p: usize| job.parts[p].roles.iter().map(|r| *r != Role::Outer).collect::<Vec<bool>>();
-    let mut first: BTreeMap<(usize, Vec<bool>), usize> = BTreeMap::new();
-    let same_as: Vec<usize> =
-        (0..job.parts.len()).map(|p| *first.entry((job.parts[p].shape, contact(p))).or_insert(p)).collect();
+/// Moves the contact facets of every part inward and parts the bodies to their fits. Parts with the same shape, contact
+/// facets and aim are moved once.
+pub fn offset(job: &Job, aims: &[Aim]) -> Vec<Offset> {
+    let key = |p: usize| {
+        let contact: Vec<bool> = job.parts[p].roles.iter().map(|r| *r != Role::Outer).collect();
+        (job.parts[p].shape, contact, [aims[p].depth, aims[p].weld].map(f64::to_bits))
+    };
+    let mut first: BTreeMap<_, usize> = BTreeMap::new();
+    let same_as: Vec<usize> = (0..job.parts.len()).map(|p| *first.entry(key(p)).or_insert(p)).collect();
     let moved: BTreeMap<usize, (Body, Settled)> =
-        first.par_iter().map(|((s, c), &p)| (p, moved_body(job, *s, c, aim))).collect();
+        first.par_iter().map(|((s, c, _), &p)| (p, moved_body(job, *s, c, &aims[p]))).collect();
     let mut bodies: Vec<Body> =
         same_as.iter().zip(&job.parts).map(|(first, part)| moved[first].0.posed(&part.pose)).collect();
-    let relieved = relief::relieve(&mut bodies, aim);
+    let relieved = relief::relieve(&mut bodies, aims);
     let result = |p: usize| {
         let shared = if relieved[p].is_none() && relieved[same_as[p]].is_none() { same_as[p] } else { p };
         finish(&bodies[p], &moved[&same_as[p]].1, relieved[p].as_ref(), shared)
@@ -93,7 +101,7 @@ pub fn offset(job: &Job, aim: &Aim) -> Vec<Offset> {
 
 fn moved_body(job: &Job, shape: usize, contact: &[bool], aim: &Aim) -> (Body, Settled) {
     let mut body = Body::new(&job.shapes[shape], contact, aim.depth);
-    weld::weld(&mut body, aim.depth * REACH);
+    weld::weld(&mut body, aim.weld);
     split::split(&mut body);
     let settled = settle::settle(&mut body, aim.thinnest);
     (body, settled)

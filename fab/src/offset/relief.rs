@@ -37,20 +37,20 @@ struct Surface {
     tree: Bvh,
 }
 
-/// Parts bodies that are nearer than `aim.fit` to twice `aim.depth`. Gives, for each body, what was done to it, or `None` where it
-/// was left as it was.
-pub fn relieve(bodies: &mut [Body], aim: &Aim) -> Vec<Option<Settled>> {
+/// Parts bodies that are nearer than the sum of their shares to the sum of their depths. Gives, for each body, what was
+/// done to it, or `None` where it was left as it was.
+pub fn relieve(bodies: &mut [Body], aims: &[Aim]) -> Vec<Option<Settled>> {
     let mut done: Vec<Option<Settled>> = vec![None; bodies.len()];
     let mut surfaces: Vec<Surface> = bodies.par_iter().map(surface).collect();
     let mut changed = vec![true; bodies.len()];
     for _ in 0..ROUNDS {
-        let pushes = all_pushes(&surfaces, &changed, aim);
+        let pushes = all_pushes(&surfaces, &changed, aims);
         changed = pushes.iter().map(|p| !p.is_empty()).collect();
         if !changed.contains(&true) {
             break;
         }
-        bodies.par_iter_mut().zip(&mut surfaces).zip(&mut done).zip(&pushes).for_each(
-            |(((b, s), d), pushes)| {
+        bodies.par_iter_mut().zip(&mut surfaces).zip(&mut done).zip(&pushes).zip(aims).for_each(
+            |((((b, s), d), pushes), aim)| {
                 if !pushes.is_empty() {
                     *d = Some(apply(b, pushes, aim.thinnest, d.take().unwrap_or_default()));
                     *s = surface(b);
@@ -77,10 +77,11 @@ fn apply(body: &mut Body, pushes: &BTreeMap<u32, Push>, thinnest: f64, before: S
 }
 
 /// For each body, the farthest push that each of its corners needs; pairs of which none has changed need none.
-fn all_pushes(surfaces: &[Surface], changed: &[bool], aim: &Aim) -> Vec<BTreeMap<u32, Push>> {
+fn all_pushes(surfaces: &[Surface], changed: &[bool], aims: &[Aim]) -> Vec<BTreeMap<u32, Push>> {
     let boxes: Vec<Aabb> = surfaces.iter().map(|s| Aabb::of(s.mesh.vertices.iter().copied())).collect();
+    let fit = |i: usize, j: usize| aims[i].share + aims[j].share;
     let near = |i: usize, j: usize| {
-        (changed[i] || changed[j]) && boxes[i].distance_squared(&boxes[j]) < aim.fit * aim.fit
+        (changed[i] || changed[j]) && boxes[i].distance_squared(&boxes[j]) < fit(i, j).powi(2)
     };
     let pairs: Vec<(usize, usize)> =
         (0..surfaces.len()).flat_map(|j| (0..j).filter(move |&i| near(i, j)).map(move |i| (i, j))).collect();
@@ -88,13 +89,13 @@ fn all_pushes(surfaces: &[Surface], changed: &[bool], aim: &Aim) -> Vec<BTreeMap
         .par_iter()
         .map(|&(i, j)| {
             let [a, b] = [i, j].map(|k| (&surfaces[k].mesh, &surfaces[k].tree));
-            closer_than(a, b, aim.fit)
+            closer_than(a, b, fit(i, j))
         })
         .collect();
     let mut pushes = vec![BTreeMap::new(); surfaces.len()];
     for (&(i, j), close) in pairs.iter().zip(&close) {
         for c in close {
-            let lack = aim.depth - c.near.distance / 2.0;
+            let lack = (aims[i].depth + aims[j].depth - c.near.distance) / 2.0;
             let Some(towards_b) = direction(&surfaces[i], &surfaces[j], c) else { continue };
             share(
                 &surfaces[i],

@@ -7,6 +7,7 @@
 mod cells;
 mod close;
 mod crossing;
+mod digits;
 mod faults;
 mod flat;
 mod obj;

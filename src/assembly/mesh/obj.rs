@@ -4,21 +4,22 @@
 //! Not promised: free-form surfaces (`cstype`, `curv`, `surf`) and lines are not faces; a file of those alone
 //! is refused.
 
+use super::digits::Digits;
 use super::faults::{Found, Place, found};
-use super::soup::{Soup, finite, half_unit};
+use super::soup::{Soup, finite};
 use glam::DVec3;
 
 pub(super) fn read(text: &str) -> Result<Soup, Vec<Found>> {
     let mut soup = Soup::default();
     let mut faults = Vec::new();
     let mut points: Vec<Option<DVec3>> = Vec::new();
-    let mut written = f64::INFINITY;
+    let mut digits = Digits::default();
     for (place, line) in logical_lines(text) {
         let mut words = line.split_whitespace();
         match words.next() {
             Some("v") => {
                 let numerals: Vec<&str> = words.take(3).collect();
-                written = numerals.iter().map(|s| half_unit(s)).fold(written, f64::min);
+                numerals.iter().for_each(|s| digits.note(s));
                 points.push(vertex(&numerals, place).map_err(|f| faults.push(f)).ok());
             }
             Some("f") => match face(words, &points, place) {
@@ -29,7 +30,7 @@ pub(super) fn read(text: &str) -> Result<Soup, Vec<Found>> {
             _ => {}
         }
     }
-    soup.settle_resolution(if written.is_finite() { written } else { 0.0 });
+    soup.resolution = digits.resolution();
     if faults.is_empty() { Ok(soup) } else { Err(faults) }
 }
 

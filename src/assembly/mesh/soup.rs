@@ -36,20 +36,6 @@ impl Soup {
         self.faces.push(face);
         self.places.push(place);
     }
-
-    /// Largest coordinate by magnitude, in model units.
-    pub fn reach(&self) -> f64 {
-        self.vertices.iter().map(|p| p.abs().max_element()).fold(0.0, f64::max)
-    }
-
-    /// Sets `resolution`: as single precision where every coordinate is one, otherwise `written`, never below
-    /// round-off.
-    pub fn settle_resolution(&mut self, written: f64) {
-        let single = self.vertices.iter().all(|p| p.to_array().iter().all(|&x| f64::from(x as f32) == x));
-        let half_ulp = if single { f64::from(f32::EPSILON) / 2.0 } else { f64::EPSILON / 2.0 };
-        let rounding = half_ulp * self.reach();
-        self.resolution = if single { rounding } else { written.max(rounding) };
-    }
 }
 
 /// The three coordinates if they are all finite.
@@ -65,26 +51,9 @@ pub(super) fn finite(p: [f64; 3], place: Place) -> Result<DVec3, Found> {
     }
 }
 
-/// Half a unit in the last place of a decimal numeral: `1.25` is known to 0.005, `3e-2` to 0.005.
-pub(super) fn half_unit(numeral: &str) -> f64 {
-    let (mantissa, exponent) = match numeral.split_once(['e', 'E']) {
-        Some((m, e)) => (m, e.parse::<i32>().unwrap_or(0)),
-        None => (numeral, 0),
-    };
-    let decimals = mantissa.split_once('.').map_or(0, |(_, d)| d.len() as i32);
-    0.5 * 10f64.powi(exponent - decimals)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn numerals_tell_how_well_they_are_known() {
-        for (s, h) in [("1.25", 0.005), ("3e-2", 0.005), ("7", 0.5), ("-0.5000", 5e-5), ("1.5E+3", 50.0)] {
-            assert!((half_unit(s) / h - 1.0).abs() < 1e-12, "{s}");
-        }
-    }
 
     #[test]
     fn welds_by_identity_only() {

@@ -3,8 +3,9 @@
 //! Not promised: the normals in the file are passed over, the corners' order alone says which side is out.
 //! ASCII numbers are read as f64, so two files that differ beyond single precision stay different.
 
+use super::digits::Digits;
 use super::faults::{Found, Place, found};
-use super::soup::{Soup, finite, half_unit};
+use super::soup::{Soup, finite};
 use glam::DVec3;
 use std::io::Cursor;
 
@@ -49,7 +50,7 @@ fn neither(have: u64, claimed: Option<u32>, needed: Option<u64>) -> Found {
 }
 
 fn binary(bytes: &[u8]) -> Result<Soup, Vec<Found>> {
-    let mut soup = Soup::default();
+    let (mut soup, mut digits) = (Soup::default(), Digits::default());
     let mut faults = Vec::new();
     // stl_io takes a file that starts with "solid" for ASCII; the length has already said binary.
     let mut owned = bytes.to_vec();
@@ -63,6 +64,7 @@ fn binary(bytes: &[u8]) -> Result<Soup, Vec<Found>> {
         let place = Place::Face(k);
         match triangle {
             Ok(t) => {
+                t.vertices.iter().flat_map(|v| v.0).for_each(|x| digits.note_single(x));
                 let corners: Result<Vec<_>, _> =
                     t.vertices.iter().map(|v| finite(v.0.map(f64::from), place)).collect();
                 corners.map(|c| soup.push(&c, place)).unwrap_or_else(|f| faults.push(f));
@@ -70,14 +72,14 @@ fn binary(bytes: &[u8]) -> Result<Soup, Vec<Found>> {
             Err(e) => faults.push(found(place, e.to_string(), "export it again")),
         }
     }
-    soup.settle_resolution(0.0);
+    soup.resolution = digits.resolution();
     if faults.is_empty() { Ok(soup) } else { Err(faults) }
 }
 
 fn ascii(text: &str) -> Result<Soup, Vec<Found>> {
     let mut soup = Soup::default();
     let mut faults = Vec::new();
-    let mut written = f64::INFINITY;
+    let mut digits = Digits::default();
     let mut corners: Vec<DVec3> = Vec::new();
     let mut opened = Place::Line(1);
     for (k, line) in text.lines().enumerate() {
@@ -89,7 +91,7 @@ fn ascii(text: &str) -> Result<Soup, Vec<Found>> {
                 opened = place;
             }
             [w, ref numerals @ ..] if w.eq_ignore_ascii_case("vertex") => {
-                written = numerals.iter().map(|s| half_unit(s)).fold(written, f64::min);
+                numerals.iter().for_each(|s| digits.note(s));
                 vertex(numerals, place).map(|p| corners.push(p)).unwrap_or_else(|f| faults.push(f));
             }
             [w, ..] if w.eq_ignore_ascii_case("endfacet") => {
@@ -115,7 +117,7 @@ fn ascii(text: &str) -> Result<Soup, Vec<Found>> {
             "the file may be cut short",
         ));
     }
-    soup.settle_resolution(if written.is_finite() { written } else { 0.0 });
+    soup.resolution = digits.resolution();
     if faults.is_empty() { Ok(soup) } else { Err(faults) }
 }
 

@@ -4,8 +4,9 @@
 //! promised: beam lattices, booleans, displacements and slices are passed over; objects that are support are
 //! left out.
 
+use super::digits::Digits;
 use super::faults::{Found, Place, found};
-use super::soup::{Soup, finite, half_unit};
+use super::soup::{Soup, finite};
 use glam::{DAffine3, DVec3};
 use quick_xml::Reader;
 use quick_xml::events::{BytesStart, Event};
@@ -34,8 +35,8 @@ struct Model {
     mm: f64,
     objects: BTreeMap<Key, Object>,
     items: Vec<Use>,
-    /// Half a unit in the last place of the finest numeral, in the package's own unit.
-    written: f64,
+    /// Of all coordinates, in the package's own unit.
+    digits: Digits,
     faults: Vec<Found>,
 }
 
@@ -55,7 +56,7 @@ struct Use {
 pub(super) fn read(bytes: &[u8], mm_per_unit: f64) -> Result<Soup, Vec<Found>> {
     let parts =
         model_parts(bytes).map_err(|e| vec![found(Place::File, format!("no 3MF package: {e}"), HINT)])?;
-    let mut model = Model { mm: 1.0, written: f64::INFINITY, ..Model::default() };
+    let mut model = Model { mm: 1.0, ..Model::default() };
     for (name, xml) in &parts {
         parse(name, xml, &mut model);
     }
@@ -63,7 +64,7 @@ pub(super) fn read(bytes: &[u8], mm_per_unit: f64) -> Result<Soup, Vec<Found>> {
     let mut unpacking = Unpacking { objects: &model.objects, soup: Soup::default(), scale, uses: 0 };
     let bad: Vec<Found> = model.items.iter().filter_map(|i| unpacking.push(i, i.pose, 0).err()).collect();
     let mut soup = unpacking.soup;
-    soup.settle_resolution(if model.written.is_finite() { model.written * scale } else { 0.0 });
+    soup.resolution = model.digits.resolution() * scale;
     model.faults.extend(bad);
     if model.faults.is_empty() { Ok(soup) } else { Err(model.faults) }
 }
@@ -135,7 +136,7 @@ fn element(part: &str, tag: &Tag, current: &mut Option<Key>, model: &mut Model) 
         }
         ("vertex", Some(o)) => {
             let numerals = ["x", "y", "z"].map(|n| tag.get(n).unwrap_or_default());
-            model.written = numerals.iter().map(|s| half_unit(s)).fold(model.written, f64::min);
+            numerals.iter().for_each(|s| model.digits.note(s));
             o.vertices.push(finite([tag.need("x")?, tag.need("y")?, tag.need("z")?], tag.place)?);
         }
         ("triangle", Some(o)) => o.triangles.push([tag.need("v1")?, tag.need("v2")?, tag.need("v3")?]),

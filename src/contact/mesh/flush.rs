@@ -25,6 +25,8 @@ pub(super) struct Flush {
     pub gap: f64,
     /// Angle between the two faces, in radians.
     pub tilt: f64,
+    /// By how much the normal may be off, in radians.
+    pub known: f64,
 }
 
 #[derive(Clone, Copy, PartialEq)]
@@ -87,15 +89,20 @@ fn group(a: &Shape, b: &Shape, pairs: &[(usize, usize)], facing: Facing, toleran
     let toward = if facing == Facing::Opposed { -nb } else { nb };
     let frame = Frame::of((na + toward).normalize());
     let tilt = na.cross(toward).length().atan2(na.dot(toward));
+    let best = |s: &Shape, of: &mut dyn Iterator<Item = usize>| {
+        of.map(|k| s.faces[k].known).fold(f64::INFINITY, f64::min)
+    };
+    let (ka, kb) = (best(a, &mut pairs.iter().map(|p| p.0)), best(b, &mut pairs.iter().map(|p| p.1)));
+    let known = ((ka + kb) + tilt) / 2.0;
     let mut pieces: Vec<Piece> =
         pairs.iter().filter_map(|&(f, g)| piece(a, b, f, g, &frame, tolerance)).collect();
     pieces.sort_by(|p, q| p.height.total_cmp(&q.height));
     // Pieces of one plane are no farther from each other than the tolerance on either side; steps are.
     let levels = pieces.chunk_by(|p, q| q.height - p.height <= 2.0 * tolerance);
-    levels.flat_map(|level| level_regions(level, &frame, tilt, tolerance)).collect()
+    levels.flat_map(|level| level_regions(level, &frame, [tilt, known], tolerance)).collect()
 }
 
-fn level_regions(level: &[Piece], frame: &Frame, tilt: f64, tolerance: f64) -> Vec<Flush> {
+fn level_regions(level: &[Piece], frame: &Frame, [tilt, known]: [f64; 2], tolerance: f64) -> Vec<Flush> {
     let gap = level.iter().map(|p| p.gap).fold(0.0, f64::max);
     let height = level.iter().map(|p| p.height).sum::<f64>() / level.len() as f64;
     let rings = level.iter().map(|p| p.ring.clone()).collect();
@@ -107,6 +114,7 @@ fn level_regions(level: &[Piece], frame: &Frame, tilt: f64, tolerance: f64) -> V
         corners: r.into_iter().map(|p| frame.space(p, height)).collect(),
         gap,
         tilt,
+        known,
     })
     .collect()
 }

@@ -32,6 +32,8 @@ pub(super) enum Form {
 pub(super) struct Local {
     pub form: Form,
     pub normals: Vec<DVec3>,
+    /// By how much the worst known of the normals may be off, in radians.
+    pub known: f64,
 }
 
 pub(super) struct Edge {
@@ -111,9 +113,14 @@ fn edges(points: &[DVec3], faces: &[Face]) -> Vec<Edge> {
             [l, r] if l.len() == 1 && r.len() == 1 => dihedral(faces[l[0]].normal, faces[r[0]].normal, along),
             _ => Form::Saddle,
         };
-        Edge { ends, local: Local { form, normals: distinct(normals) } }
+        let known = worst(faces, side.iter().flatten());
+        Edge { ends, local: Local { form, normals: distinct(normals), known } }
     };
     sides.into_iter().map(edge).collect()
+}
+
+fn worst<'a>(faces: &[Face], of: impl IntoIterator<Item = &'a usize>) -> f64 {
+    of.into_iter().map(|&k| faces[k].known).fold(0.0, f64::max)
 }
 
 /// The form of an edge from the normals to its left and right, seen along it from outside.
@@ -148,7 +155,8 @@ fn vertices(count: usize, faces: &[Face], edges: &[Edge]) -> Vec<Option<Local>> 
     let vertex = |i: usize| {
         let normals = distinct(around[i].iter().map(|&k| faces[k].normal));
         let form = if fans(i as u32, &around[i], faces) == 1 { corner(&spokes[i]) } else { Form::Saddle };
-        (!around[i].is_empty()).then_some(Local { form, normals })
+        let known = worst(faces, &around[i]);
+        (!around[i].is_empty()).then_some(Local { form, normals, known })
     };
     (0..count).map(vertex).collect()
 }

@@ -5,23 +5,29 @@
 //! not for *free*); they are listed as assumed.
 
 mod cone;
+mod direction;
 mod flush;
+mod known;
 mod local;
 mod overlap;
 mod polygon;
 mod shape;
 mod touch;
 
+pub use direction::Assumption;
+pub use known::Accuracy;
 pub use touch::Why;
 
 use crate::assembly::{Assembly, PartIx};
 use crate::contact::Patch;
+use direction::{Direction, settled};
 use flush::Facing;
 use glam::DVec3;
 use parry3d_f64::bounding_volume::{Aabb, BoundingVolume};
 use parry3d_f64::partitioning::{Bvh, BvhBuildStrategy};
 use rayon::prelude::*;
 use shape::Shape;
+use touch::{Passed, Touch};
 
 /// What is known of a patch beside its polygon.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -32,6 +38,8 @@ pub struct Facts {
     /// Angle between the two surfaces, in radians: measured for faces, a bound for edges, nothing to measure
     /// for points.
     pub tilt: f64,
+    /// By how much the normal may be off as far as the files tell, in radians.
+    pub known: f64,
 }
 
 /// What touches.
@@ -54,6 +62,9 @@ pub struct Assumed {
     /// One point, or the two ends of a stretch, in the assembly's frame.
     pub corners: Vec<DVec3>,
     pub why: Why,
+    /// The planes between two convex corners: their normals from `a` to `b` are combinations of these. None where
+    /// they are not known.
+    pub normals: Vec<DVec3>,
 }
 
 /// The contacts of an assembly of meshes; `facts` runs parallel to `patches`.
@@ -62,6 +73,8 @@ pub struct MeshContacts {
     pub patches: Vec<Patch>,
     pub facts: Vec<Facts>,
     pub assumed: Vec<Assumed>,
+    /// What was made one because it could not be told apart.
+    pub settled: Assumption,
 }
 
 /// Two parts that share space.
@@ -83,13 +96,20 @@ pub struct Overlap {
 #[error("{}", .0.iter().map(Overlap::to_string).collect::<Vec<_>>().join("\n"))]
 pub struct ContactFaults(pub Vec<Overlap>);
 
-/// Finds where parts touch. `tolerance` in model units; larger than zero.
+/// Finds where parts touch. `tolerance` in model units; larger than zero. `accuracy` says for each part how well it
+/// is known; a part that it does not reach is taken as exact.
 ///
 /// # Errors
 /// All pairs that overlap by more than the tolerance.
-pub fn mesh_patches(assembly: &Assembly, tolerance: f64) -> Result<MeshContacts, ContactFaults> {
+pub fn mesh_patches(
+    assembly: &Assembly,
+    accuracy: &[Accuracy],
+    tolerance: f64,
+) -> Result<MeshContacts, ContactFaults> {
     let origin = middle(assembly);
-    let shapes: Vec<Shape> = assembly.ids().map(|p| Shape::new(assembly, p, origin)).collect();
+    let normals = known::normals(assembly, accuracy, tolerance);
+    let shapes: Vec<Shape> =
+        assembly.ids().map(|p| Shape::new(assembly, p, origin, &normals[p.at()])).collect();
     let pairs = near_pairs(&shapes, tolerance);
     let found: Vec<Result<MeshContacts, Overlap>> = pairs
         .par_iter()
@@ -103,12 +123,37 @@ pub fn mesh_patches(assembly: &Assembly, tolerance: f64) -> Result<MeshContacts,
     if !faults.is_empty() {
         return Err(ContactFaults(faults));
     }
-    Ok(good.into_iter().flatten().fold(MeshContacts::default(), |mut all, c| {
+    let all = good.into_iter().flatten().fold(MeshContacts::default(), |mut all, c| {
         all.patches.extend(c.patches);
         all.facts.extend(c.facts);
         all.assumed.extend(c.assumed);
         all
-    }))
+    });
+    Ok(with_settled_normals(all, tolerance))
+}
+
+/// The contacts with normals made one that cannot be told apart, and corners moved into the planes of theirs.
+fn with_settled_normals(mut all: MeshContacts, tolerance: f64) -> MeshContacts {
+    let given = all.patches.iter().zip(&all.facts).map(|(p, f)| {
+        // No corner moves by more than twice the tolerance.
+        Direction { n: p.normal, known: f.known.min(tolerance / radius(&p.corners)) }
+    });
+    let (normals, assumption) = settled(&given.collect::<Vec<_>>());
+    for (patch, d) in all.patches.iter_mut().zip(normals) {
+        if d.n != patch.normal {
+            let middle = patch.corners.iter().sum::<DVec3>() / patch.corners.len() as f64;
+            patch.corners.iter_mut().for_each(|p| *p -= (*p - middle).dot(d.n) * d.n);
+            patch.normal = d.n;
+        }
+    }
+    all.settled = assumption;
+    all
+}
+
+/// From the middle of the corners to the farthest.
+fn radius(corners: &[DVec3]) -> f64 {
+    let middle = corners.iter().sum::<DVec3>() / corners.len() as f64;
+    corners.iter().map(|p| p.distance(middle)).fold(0.0, f64::max)
 }
 
 /// Middle of the assembly's box: coordinates about it are as small as they can be.
@@ -143,21 +188,24 @@ fn touching(a: &Shape, b: &Shape, origin: DVec3, tolerance: f64) -> MeshContacts
     let back = |corners: &[DVec3]| corners.iter().map(|&p| p + origin).collect::<Vec<_>>();
     let patch =
         |normal: DVec3, corners: &[DVec3]| Patch { a: a.part, b: b.part, normal, corners: back(corners) };
-    let flat = faces
-        .iter()
-        .map(|f| (patch(f.normal, &f.corners), Facts { kind: Kind::Face, gap: f.gap, tilt: f.tilt }));
-    let rest = small.rows.iter().map(|t| (patch(t.normal, &t.corners), small_facts(&t.corners, tolerance)));
+    let flat = faces.iter().map(|f| {
+        (patch(f.normal, &f.corners), Facts { kind: Kind::Face, gap: f.gap, tilt: f.tilt, known: f.known })
+    });
+    let rest = small.rows.iter().map(|t| (patch(t.normal, &t.corners), small_facts(t, tolerance)));
     let (patches, facts) = flat.chain(rest).unzip();
-    let assumed = small.passed.iter();
-    let assumed =
-        assumed.map(|q| Assumed { a: a.part, b: b.part, corners: back(&q.corners), why: q.why }).collect();
-    MeshContacts { patches, facts, assumed }
+    let assumed = |q: &Passed| {
+        let (corners, normals) = (back(&q.corners), q.normals.clone());
+        Assumed { a: a.part, b: b.part, corners, why: q.why, normals }
+    };
+    let assumed = small.passed.iter().map(assumed).collect();
+    MeshContacts { patches, facts, assumed, settled: Assumption::default() }
 }
 
 /// An edge that stays within the tolerance of a face over a stretch may lean by that over its length.
-fn small_facts(corners: &[DVec3], gap: f64) -> Facts {
-    match corners {
-        [p, q] => Facts { kind: Kind::Edge, gap, tilt: (gap / p.distance(*q)).atan() },
-        _ => Facts { kind: Kind::Point, gap, tilt: 0.0 },
+fn small_facts(t: &Touch, gap: f64) -> Facts {
+    let known = t.known;
+    match t.corners[..] {
+        [p, q] => Facts { kind: Kind::Edge, gap, tilt: (gap / p.distance(q)).atan(), known },
+        _ => Facts { kind: Kind::Point, gap, tilt: 0.0, known },
     }
 }

@@ -2,6 +2,7 @@
 //!
 //! Not promised: that facets are planar beyond what their solid promises.
 
+use super::direction::Direction;
 use super::local::{Features, Form, Local};
 use crate::assembly::{Assembly, PartIx};
 use crate::solid::Cell;
@@ -13,6 +14,8 @@ use parry3d_f64::partitioning::{Bvh, BvhBuildStrategy};
 pub(super) struct Face {
     pub corners: Vec<u32>,
     pub normal: DVec3,
+    /// By how much the normal may be off, in radians.
+    pub known: f64,
     /// The face's own form: flat, with its normal.
     pub local: Local,
 }
@@ -30,19 +33,17 @@ pub(super) struct Shape {
 }
 
 impl Shape {
-    pub fn new(assembly: &Assembly, part: PartIx, origin: DVec3) -> Shape {
-        let pose = assembly.part(part).pose;
+    /// `normals`: of each facet, in place.
+    pub fn new(assembly: &Assembly, part: PartIx, origin: DVec3, normals: &[Direction]) -> Shape {
         let solid = assembly.solid(part);
         let points: Vec<DVec3> = assembly.vertices(part).map(|p| p - origin).collect();
-        let place = |f: &crate::solid::Facet| {
-            let normal = pose.transform_vector3(f.normal).normalize();
-            Face {
-                corners: f.corners.clone(),
-                normal,
-                local: Local { form: Form::Flat, normals: vec![normal] },
-            }
+        let place = |(f, d): (&crate::solid::Facet, &Direction)| Face {
+            corners: f.corners.clone(),
+            normal: d.n,
+            known: d.known,
+            local: Local { form: Form::Flat, normals: vec![d.n], known: d.known },
         };
-        let faces: Vec<Face> = solid.facets.iter().map(place).collect();
+        let faces: Vec<Face> = solid.facets.iter().zip(normals).map(place).collect();
         let boxes: Vec<Aabb> =
             faces.iter().map(|f| around(f.corners.iter().map(|&i| points[i as usize]))).collect();
         let tree = Bvh::from_leaves(BvhBuildStrategy::Binned, &boxes);

@@ -2,10 +2,12 @@
 //!
 //! Not promised: more than `flex` does; a minimum is given only where the bounds meet.
 
-use super::{Certificate, Source, certificate, ids};
+use super::{Certificate, Source, certificate, checksum, ids};
 use crate::assembly::PartIx;
 use crate::contact::Joined;
-use crate::flex::{Flex, Listing};
+use crate::flex::symmetry::Symmetry;
+use crate::flex::{Ask, Cut, Enough, Flex, Listing, Set, Wanted};
+use crate::sequence::Plan;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -16,6 +18,27 @@ pub struct CoreAnswer {
     pub certificate: Certificate,
 }
 
+/// Sets that symmetries of the assembly carry into one another.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct OrbitAnswer {
+    /// The set that the plan is for.
+    pub set: Vec<String>,
+    /// All of the orbit, `set` among them.
+    pub all: Vec<Vec<String>>,
+    /// Takes the parts outside `set` apart.
+    pub plan: Plan<()>,
+}
+
+/// An isometry of the assembly: x -> linear x + shift, and where it takes each part.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct SymmetryOfParts {
+    /// Rows of the linear part.
+    pub linear: [[f64; 3]; 3],
+    pub shift: [f64; 3],
+    /// Images of the parts, in the order of the parts.
+    pub to: Vec<String>,
+}
+
 /// Answer of `flex`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct FlexAnswer {
@@ -23,40 +46,96 @@ pub struct FlexAnswer {
     pub name: String,
     /// Fewest flexible parts; null where the bounds do not meet.
     pub minimum: Option<usize>,
+    /// Proven by the cores: no smaller set meets them all.
     pub lower_bound: usize,
     /// Size of the smallest set shown to be enough.
     pub upper_bound: usize,
     /// All sets of that size that are enough (`sets_complete` says whether all are named).
     pub sets: Vec<Vec<String>>,
     pub sets_complete: bool,
+    /// The sets up to symmetry, each with its plan; with `--minimal` also larger ones from which no part can be left out.
+    pub orbits: Vec<OrbitAnswer>,
+    /// `smallest` or `minimal`.
+    pub wanted: String,
+    /// Whether `orbits` names all that were wanted, and if not what ended the search: `complete`, `smallest-complete`,
+    /// `work`, `time`, `many`.
+    pub listed: String,
+    pub symmetries: Vec<SymmetryOfParts>,
     /// The proof of the lower bound.
     pub cores: Vec<CoreAnswer>,
     /// Sets that no plan took apart although they are not proven locked.
     pub unproven: Vec<Vec<String>>,
+    /// Air on each face of a contact, mm; 0: the parts as they touch.
+    pub clearance_mm: f64,
+    /// Locks and plans tried, each counted as its parts squared and its contact patches.
+    pub work: u64,
     pub remarks: Vec<String>,
     pub source: Source,
+    pub checksum: String,
 }
 
-pub fn flex(joined: &Joined, flex: &Flex, source: Source) -> FlexAnswer {
+pub fn flex(joined: &Joined, flex: &Flex, ask: &Ask, source: Source) -> FlexAnswer {
     let asm = &joined.assembly;
-    let named = |set: &std::collections::BTreeSet<PartIx>| ids(asm, &set.iter().copied().collect::<Vec<_>>());
-    let core = |c: &crate::flex::Core| {
-        let inside: Vec<PartIx> = c.parts.iter().copied().collect();
-        let held: Vec<PartIx> = asm.held().filter(|p| inside.contains(p)).collect();
-        let still = if held.is_empty() { inside[..1].to_vec() } else { held };
-        CoreAnswer { parts: named(&c.parts), certificate: certificate(asm, &still, &c.stress) }
+    let named = |set: &Set| ids(asm, &set.iter().copied().collect::<Vec<_>>());
+    let orbit = |e: &Enough| OrbitAnswer {
+        set: named(&e.set),
+        all: e.orbit.iter().map(named).collect(),
+        plan: e.plan.clone(),
     };
-    FlexAnswer {
+    let smallest = flex.enough.iter().filter(|e| e.set.len() == flex.upper);
+    let mut sets: Vec<&Set> = smallest.flat_map(|e| &e.orbit).collect();
+    sets.sort();
+    let answer = FlexAnswer {
         verb: "flex".into(),
         name: asm.name.clone(),
         minimum: flex.minimum(),
         lower_bound: flex.lower,
         upper_bound: flex.upper,
-        sets: flex.sets.iter().map(named).collect(),
-        sets_complete: flex.list == Listing::Complete,
-        cores: flex.cores.iter().map(core).collect(),
+        sets: sets.into_iter().map(named).collect(),
+        sets_complete: is_complete(flex),
+        orbits: flex.enough.iter().map(orbit).collect(),
+        wanted: if ask.wanted == Wanted::Smallest { "smallest" } else { "minimal" }.into(),
+        listed: listed(flex.list).into(),
+        symmetries: flex.symmetries.iter().map(|s| symmetry(joined, s)).collect(),
+        cores: flex.cores.iter().map(|c| core(joined, c)).collect(),
         unproven: flex.unproven.iter().map(named).collect(),
+        clearance_mm: ask.clearance * asm.mm_per_unit,
+        work: flex.work,
         remarks: joined.remarks.clone(),
         source,
+        checksum: String::new(),
+    };
+    FlexAnswer { checksum: checksum(&answer), ..answer }
+}
+
+/// Every set of the least size that meets all cores is listed: none was left out since no plan was found for it.
+fn is_complete(flex: &Flex) -> bool {
+    flex.minimum().is_some() && flex.unproven.is_empty() && !matches!(flex.list, Listing::CutShort(_))
+}
+
+fn listed(list: Listing) -> &'static str {
+    match list {
+        Listing::Complete => "complete",
+        Listing::SmallestComplete => "smallest-complete",
+        Listing::CutShort(Cut::Work) => "work",
+        Listing::CutShort(Cut::Time) => "time",
+        Listing::CutShort(Cut::Many) => "many",
+    }
+}
+
+fn core(joined: &Joined, c: &crate::flex::Core) -> CoreAnswer {
+    let asm = &joined.assembly;
+    let inside: Vec<PartIx> = c.parts.iter().copied().collect();
+    let held: Vec<PartIx> = asm.held().filter(|p| inside.contains(p)).collect();
+    let still = if held.is_empty() { inside[..1].to_vec() } else { held };
+    CoreAnswer { parts: ids(asm, &inside), certificate: certificate(asm, &still, &c.stress) }
+}
+
+fn symmetry(joined: &Joined, s: &Symmetry) -> SymmetryOfParts {
+    let rows = s.map.matrix3.transpose();
+    SymmetryOfParts {
+        linear: [rows.x_axis, rows.y_axis, rows.z_axis].map(|r| r.to_array()),
+        shift: s.map.translation.to_array(),
+        to: s.to.iter().map(|&k| joined.assembly.parts[k].id.clone()).collect(),
     }
 }

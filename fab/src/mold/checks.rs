@@ -1,0 +1,174 @@
+//! Takes the halves of a mold as read back, and its plan; gives what was measured on them, each with its limit.
+//!
+//! The sweeps are exact up to round-off (`shadow`); volumes come from the boolean kernel.
+
+use crate::bvh::Bvh;
+use crate::mesh::Mesh;
+use crate::mold::figures::Figures;
+use crate::mold::plan::Plan;
+use crate::mold::ray;
+use crate::mold::rigid::{KEY_TIP, Tools};
+use crate::mold::shadow::{self, Side};
+use crate::mold::tops::Top;
+use crate::mold::{Measured, Mold, silicone};
+use crate::solid::{NotSolid, Solid, cuboid};
+use glam::{DVec2, DVec3};
+
+/// The volume that the cavity may be off, as a share of the part's: the promise of the workshop.
+pub const CAVITY_SHARE: f64 = 1e-4;
+
+/// Volumes are taken from corners each of which may be off by one snap: their sum by the surface times that.
+fn volume_round_off(surface: f64, snap: f64) -> f64 {
+    surface * snap
+}
+
+pub struct Halves<'a> {
+    pub lower: &'a Mesh,
+    pub upper: &'a Mesh,
+}
+
+/// All measurements of a rigid mold.
+pub fn rigid(mold: &Mold, h: &Halves) -> Result<Vec<Measured>, NotSolid> {
+    let tools = Tools::of(&mold.plan, &mold.figures)?;
+    let mut all = volumes(mold, h, &tools)?;
+    all.extend(sweeps(mold, h));
+    all.extend(channels(mold, h));
+    all.push(one_way(&mold.plan, &mold.figures));
+    Ok(all)
+}
+
+/// A silicone mold, by the board as read back: what both pours around it leave of the part.
+pub fn silicone(mold: &Mold, board: &Mesh) -> Result<Vec<Measured>, NotSolid> {
+    let [lower, upper] = silicone::pours(&Solid::of(board)?, &mold.plan, &mold.figures)?;
+    let (lower, upper) = (lower.mesh(), upper.mesh());
+    let h = Halves { lower: &lower, upper: &upper };
+    let mut all = volumes(mold, &h, &Tools::of(&mold.plan, &mold.figures)?)?;
+    all.extend(channels(mold, &h));
+    all.push(one_way(&mold.plan, &mold.figures));
+    Ok(all)
+}
+
+fn volumes(mold: &Mold, h: &Halves, tools: &Tools) -> Result<Vec<Measured>, NotSolid> {
+    let (lower, upper, part) = (Solid::of(h.lower)?, Solid::of(h.upper)?, Solid::of(&mold.part)?);
+    let block = Solid::of(&cuboid(mold.plan.low, mold.plan.high))?;
+    let air = Solid::all(vec![tools.sockets.clone(), tools.above.clone(), tools.bolts.clone()]);
+    let inside = block.minus(&lower).minus(&upper).minus(&air);
+    let cavity = inside.volume() + part.common(&air).volume();
+    let (volume, area) = (part.volume(), h.lower.area() + h.upper.area() + mold.part.area());
+    let share = (cavity - volume).abs() / volume;
+    let channels = block.common(&air).minus(&part).minus(&lower).volume();
+    let sum = lower.volume() + upper.volume() + volume + channels;
+    let allowed = volume_round_off(area, mold.snap) + CAVITY_SHARE * volume;
+    Ok(vec![
+        Measured::at_most(
+            "cavity against part",
+            share * 100.0,
+            CAVITY_SHARE * 100.0,
+            "%",
+            "0.01 % of the part's volume",
+        ),
+        Measured::at_most(
+            "shape of the cavity against the part's, by what only one of them has",
+            (inside.minus(&part).volume() + part.minus(&air).minus(&inside).volume()) / volume * 100.0,
+            (CAVITY_SHARE + volume_round_off(mold.part.area(), mold.snap) / volume) * 100.0,
+            "%",
+            "0.01 % of the part's volume, and round-off",
+        ),
+        Measured::at_most(
+            "overlap of the halves",
+            lower.common(&upper).volume(),
+            volume_round_off(area, mold.snap),
+            "mm3",
+            "round-off of the files: surface times one snap",
+        ),
+        Measured::at_most(
+            "halves, part and channels against the block",
+            (sum - block.volume()).abs(),
+            allowed,
+            "mm3",
+            "round-off of the files, and 0.01 % of the cavity",
+        ),
+    ])
+}
+
+fn turned_over(m: &Mesh) -> Mesh {
+    m.map(|v| DVec3::new(v.x, -v.y, -v.z))
+}
+
+/// Each half moved out along its pull, without end: what of the part and of the other half it would hit.
+fn sweeps(mold: &Mold, h: &Halves) -> Vec<Measured> {
+    let hits = |name: &str, mover: &Mesh, still: &Mesh| {
+        let b = shadow::blocked(&Side::of(mover, 1.0), &Side::of(still, -1.0), mold.snap);
+        let width = if b.area > 0.0 { shadow::reach(&b, b.strip) } else { 0.0 };
+        Measured::at_most(
+            name,
+            width,
+            b.strip * 2.0,
+            "mm",
+            "round-off of the files: the widest strip that a snap of each corner makes",
+        )
+    };
+    let [lower, part] = [h.lower, &mold.part].map(turned_over);
+    let mut all = vec![
+        hits("upper half leaves the part: width that it hits", h.upper, &mold.part),
+        hits("lower half leaves the part: width that it hits", &lower, &part),
+        hits("upper half leaves the lower: width that it hits", h.upper, h.lower),
+    ];
+    if mold.pull.undercut_reach_mm > 0.0 {
+        let why = "undercut that still snaps out of a rigid mold";
+        for m in &mut all[..2] {
+            *m = Measured::at_most(m.of.clone(), m.value, mold.figures.snap.value, "mm", why);
+        }
+    }
+    all
+}
+
+fn channels(mold: &Mold, h: &Halves) -> Vec<Measured> {
+    let trees = [h.lower, h.upper].map(|m| (m, Bvh::new(m)));
+    let all = || mold.plan.sprues.iter().chain(&mold.plan.vents);
+    let shut = all().filter(|c| trees.iter().any(|(m, t)| ray::any((m, t), c.foot, DVec3::Z, 0.0))).count();
+    let reaches = all().filter(|c| c.foot.z + c.height < mold.plan.high.z - mold.snap).count();
+    let airless = mold.tops.iter().filter(|t| !vented(mold, t)).count();
+    vec![
+        Measured::at_most(
+            "channels that do not reach outside",
+            (shut + reaches) as f64,
+            0.0,
+            "channels",
+            "a ray along each axis",
+        ),
+        Measured::at_most(
+            "high points without a way out",
+            airless as f64,
+            0.0,
+            "points",
+            "a channel over each, or within the vent spacing",
+        ),
+    ]
+}
+
+fn vented(mold: &Mold, top: &Top) -> bool {
+    let near = |at: DVec3| at.truncate().distance(top.at.truncate()) <= mold.figures.vent_spacing.value;
+    mold.plan.sprues.iter().chain(&mold.plan.vents).any(|c| near(c.foot))
+}
+
+/// How far the worst-placed key misses its socket when a half is put on turned, at its best: more than a key's tip can
+/// slip into a socket.
+fn one_way(plan: &Plan, f: &Figures) -> Measured {
+    let middle = ((plan.low + plan.high) / 2.0).truncate();
+    let keys: Vec<DVec2> = plan.keys.iter().map(|k| k.at.truncate() - middle).collect();
+    let miss = |turn: DVec2| {
+        let nearest = |k: &DVec2| keys.iter().map(|s| s.distance(turn.rotate(*k))).fold(f64::MAX, f64::min);
+        keys.iter().map(nearest).fold(0.0, f64::max)
+    };
+    let turns = [DVec2::Y, DVec2::NEG_X, DVec2::NEG_Y];
+    let least = turns.into_iter().map(miss).fold(f64::MAX, f64::min);
+    let slip = f.key_diameter.value * (1.0 + KEY_TIP) / 2.0 + f.key_clearance.value;
+    Measured::at_least(
+        "a key misses its socket when a half is put on turned",
+        least,
+        slip,
+        "mm",
+        "a key's tip and a socket's mouth do not meet",
+    )
+}

@@ -1,0 +1,103 @@
+//! Takes a mesh and a pull direction; gives the mesh with the pull along z, its footprint as square to x and y as it can
+//! be, the middle of its foot at the origin, and coordinates that f32 holds.
+
+use crate::files::stl;
+use crate::mesh::Mesh;
+use crate::mold::shadow::flat;
+use glam::{DMat3, DVec2, DVec3};
+
+/// A part turned for its mold.
+#[derive(Clone, Debug)]
+pub struct Framed {
+    pub mesh: Mesh,
+    pub turn: DMat3,
+    pub shift: DVec3,
+    /// How far a coordinate may be off, mm.
+    pub snap: f64,
+}
+
+/// A direction nearer to an axis than this is the axis: f64 round-off of a normalized cross product.
+const AXIS_ROUND_OFF: f64 = 1e-12;
+
+/// Turning the footprint must save this share of its rectangle, else it stays as it came.
+const WORTH_TURNING: f64 = 0.02;
+
+/// A rotation that takes `pull` (unit) to z; for an axis it only exchanges coordinates, which f64 does exactly.
+pub fn upright(pull: DVec3) -> DMat3 {
+    let z = on_axis(pull);
+    let away = (z.abs().min_position() + usize::from(z.abs().max_element() == 1.0)) % 3;
+    let x = (DVec3::AXES[away] - z * z[away]).normalize();
+    let x = if z.abs().max_element() == 1.0 { DVec3::AXES[(z.abs().max_position() + 1) % 3] } else { x };
+    DMat3::from_cols(x, z.cross(x), z).transpose()
+}
+
+fn on_axis(d: DVec3) -> DVec3 {
+    let k = d.abs().max_position();
+    let axis = DVec3::AXES[k] * d[k].signum();
+    if (d - axis).length() < AXIS_ROUND_OFF { axis } else { d }
+}
+
+pub fn framed(part: &Mesh, pull: DVec3) -> Framed {
+    let upright = upright(pull);
+    let points: Vec<DVec2> = part.vertices.iter().map(|&v| flat(upright * v)).collect();
+    let (sin, cos) = squared(&hull(points)).sin_cos();
+    let turn = if sin == 0.0 {
+        upright
+    } else {
+        DMat3::from_cols(DVec3::new(cos, -sin, 0.0), DVec3::new(sin, cos, 0.0), DVec3::Z) * upright
+    };
+    let (lo, hi) = part.map(|v| turn * v).bounds();
+    let shift = -((lo + hi) / 2.0).with_z(lo.z);
+    let mesh = stl::snapped(&part.map(|v| turn * v + shift));
+    let (lo, hi) = mesh.bounds();
+    Framed { mesh, turn, shift, snap: stl::snap_distance(lo.abs().max(hi.abs()).max_element()) }
+}
+
+/// The angle of the hull edge that lies along the smallest rectangle around the hull.
+fn squared(hull: &[DVec2]) -> f64 {
+    let area = |angle: f64| {
+        let turn = DVec2::from_angle(-angle);
+        let start = (DVec2::INFINITY, DVec2::NEG_INFINITY);
+        let (lo, hi) = hull.iter().map(|p| turn.rotate(*p)).fold(start, |(l, h), p| (l.min(p), h.max(p)));
+        (hi - lo).element_product()
+    };
+    let edges = (0..hull.len()).map(|k| (hull[(k + 1) % hull.len()] - hull[k]).to_angle());
+    let best = edges.map(|a| (area(a), a)).min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)));
+    best.filter(|b| b.0 < area(0.0) * (1.0 - WORTH_TURNING)).map_or(0.0, |b| b.1)
+}
+
+/// Convex hull, counter-clockwise (monotone chain).
+pub fn hull(mut points: Vec<DVec2>) -> Vec<DVec2> {
+    points.sort_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
+    points.dedup();
+    let chain = |points: &mut dyn Iterator<Item = DVec2>| {
+        let mut kept: Vec<DVec2> = Vec::new();
+        for p in points {
+            while kept.len() > 1
+                && (kept[kept.len() - 1] - kept[kept.len() - 2]).perp_dot(p - kept[kept.len() - 1]) <= 0.0
+            {
+                kept.pop();
+            }
+            kept.push(p);
+        }
+        kept.pop();
+        kept
+    };
+    let mut all = chain(&mut points.iter().copied());
+    all.extend(chain(&mut points.iter().rev().copied()));
+    all
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_pull_becomes_z_and_axes_stay_exact() {
+        for d in [DVec3::X, DVec3::NEG_Z, DVec3::Y, DVec3::new(1.0, 2.0, -3.0).normalize()] {
+            let m = upright(d);
+            assert!((m * d - DVec3::Z).length() < 1e-15 && (m.determinant() - 1.0).abs() < 1e-14, "{d}");
+        }
+        assert_eq!(upright(DVec3::X) * DVec3::new(0.1, 0.2, 0.3), DVec3::new(0.2, 0.3, 0.1));
+    }
+}

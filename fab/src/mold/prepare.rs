@@ -1,0 +1,195 @@
+//! Takes a part and an order; gives the part in its mold frame with its pull, parting and high points, or why there can
+//! be no mold of it.
+
+use crate::bvh::Bvh;
+use crate::cross;
+use crate::files::stl;
+use crate::mesh::{Closure, Mesh};
+use crate::mold::frame::{Framed, framed};
+use crate::mold::parting::{self, Plane};
+use crate::mold::pull::{self, Candidate, Search};
+use crate::mold::shadow::{self, Blocked};
+use crate::mold::tops::{Top, tops};
+use crate::mold::{MoldError, MoldSpec, Pull, Route};
+use crate::solid::{NotSolid, Solid};
+use glam::DVec3;
+
+/// A part ready for its mold.
+pub struct Ready {
+    pub framed: Framed,
+    pub pull: Pull,
+    pub blocked: Blocked,
+    pub solid: Solid,
+    pub plane: Plane,
+    pub tops: Vec<Top>,
+    /// What was mended in the mesh that came.
+    pub mended: Option<String>,
+}
+
+pub fn unfit(what: impl Into<String>, hint: &str) -> MoldError {
+    MoldError::Input(what.into(), hint.to_string())
+}
+
+impl From<NotSolid> for MoldError {
+    fn from(e: NotSolid) -> MoldError {
+        unfit(e.0, "repair the mesh; the slicer's repair or admesh may do")
+    }
+}
+
+/// The largest part whose self-crossings are looked for, triangles: beyond it the kernel's answer alone is taken.
+const CROSSINGS_UP_TO: usize = 200_000;
+
+/// A part that is a plain solid, and what was mended for it.
+pub struct Checked {
+    pub mesh: Mesh,
+    pub mended: Option<String>,
+}
+
+/// Refuses what is no plain solid of one body.
+pub fn checked(part: &Mesh) -> Result<Checked, MoldError> {
+    if part.triangles.is_empty() {
+        return Err(unfit("the part has no triangles", "give a closed mesh"));
+    }
+    if part.triangles.iter().flatten().any(|&v| v as usize >= part.vertices.len()) {
+        return Err(unfit(
+            "a triangle of the part names a corner that is not there",
+            "export the mesh again",
+        ));
+    }
+    if part.vertices.iter().any(|v| !v.is_finite()) {
+        return Err(unfit("a corner of the part is not a finite number", "export the mesh again"));
+    }
+    if let Closure::Open { edges, at } = part.closure() {
+        let what =
+            format!("{edges} edges of the part are not between two opposite triangles, one at {at:.3}");
+        return Err(unfit(what, "close the mesh; the slicer's repair or admesh may do"));
+    }
+    let volume = part.volume();
+    if volume <= 0.0 {
+        return Err(unfit(format!("the part's volume is {volume:.3} mm3"), "turn its facets outward"));
+    }
+    let solid = Solid::of(part)?;
+    one_body(&solid)?;
+    uncrossed(part, &solid)
+}
+
+fn one_body(solid: &Solid) -> Result<(), MoldError> {
+    let bodies = solid.bodies();
+    if bodies.len() < 2 {
+        return Ok(());
+    }
+    Err(if bodies.iter().any(|b| b.mesh().volume() < 0.0) {
+        unfit("the part has a hollow inside that no mold can form", "fill it, or open it to the outside")
+    } else {
+        unfit("the part is several bodies", "give each a mold of its own")
+    })
+}
+
+/// By how much of itself the volume may change when crossings are mended: what f32 makes of coordinates.
+const MENDED_SHARE: f64 = 1e-6;
+
+/// Crossings of the size of round-off (programs that write f32 make them) are mended by uniting short edges; others are
+/// refused.
+fn uncrossed(part: &Mesh, solid: &Solid) -> Result<Checked, MoldError> {
+    let crossings = |m: &Mesh| cross::within(m, &Bvh::new(m));
+    if part.triangles.len() > CROSSINGS_UP_TO {
+        return Ok(Checked { mesh: part.clone(), mended: None });
+    }
+    let Some(first) = crossings(part).first().copied() else {
+        return Ok(Checked { mesh: part.clone(), mended: None });
+    };
+    for size in stl::details(part) {
+        let plain = solid.plain(size).mesh();
+        let same = (plain.volume() - part.volume()).abs() <= MENDED_SHARE * part.volume();
+        if same && plain.closure() == Closure::Closed && crossings(&plain).is_empty() {
+            let what = format!(
+                "the part's surface crossed itself at {:.3}; edges below {size:.5} mm were united",
+                first.at
+            );
+            return Ok(Checked { mesh: plain, mended: Some(what) });
+        }
+    }
+    Err(unfit(format!("the part's surface crosses itself at {:.3}", first.at), "unite its bodies first"))
+}
+
+/// Depths within this share of the least count as the same; among them the plainer parting wins.
+const SAME_DEPTH: f64 = 0.01;
+
+pub fn ready(part: &Mesh, spec: &MoldSpec) -> Result<Ready, MoldError> {
+    let Checked { mesh, mended } = checked(part)?;
+    let part = &mesh;
+    let search = match spec.pull.map(|d| d.try_normalize()) {
+        None => pull::search(part),
+        Some(Some(d)) => Search { best: vec![pull::measured(part, d)], looked_at: 1 },
+        Some(None) => {
+            return Err(unfit("the pull direction given has no length", "give three numbers, not all 0"));
+        }
+    };
+    let chosen = plainest(part, &search).ok_or_else(|| unfit("no pull direction was found", "give one"))?;
+    let direction =
+        if spec.pull.is_some() { chosen.direction } else { better_end(part, chosen.direction, spec) };
+    let framed = gang(framed(part, direction), spec);
+    let blocked = pull::undercut(&framed.mesh, framed.snap);
+    let looks = parting::looks(&framed.mesh, framed.snap);
+    let plane = parting::plane(&framed.mesh, &looks, framed.snap);
+    let tops = tops(&framed.mesh, spec.figures.vent_prominence.value);
+    let pull = answer(&search, chosen, direction, &blocked, &framed);
+    Ok(Ready { solid: Solid::of(&framed.mesh)?, framed, pull, blocked, plane, tops, mended })
+}
+
+/// Among the directions with the least undercut and about the least depth, the one whose plane leaves least off it.
+fn plainest<'a>(part: &Mesh, search: &'a Search) -> Option<&'a Candidate> {
+    let first = search.best.first()?;
+    let as_good = |c: &&Candidate| c.level == first.level && c.depth <= first.depth * (1.0 + SAME_DEPTH);
+    let off = |c: &Candidate| {
+        let f = framed(part, c.direction);
+        parting::plane(&f.mesh, &parting::looks(&f.mesh, f.snap), f.snap).wrong
+    };
+    let rated = search.best.iter().filter(as_good).map(|c| (off(c), c));
+    rated.min_by(|a, b| a.0.total_cmp(&b.0)).map(|r| r.1)
+}
+
+/// Of both ends of the pull the one that leaves fewer high points.
+fn better_end(part: &Mesh, d: DVec3, spec: &MoldSpec) -> DVec3 {
+    let count = |d: DVec3| tops(&framed(part, d).mesh, spec.figures.vent_prominence.value).len();
+    if count(-d) < count(d) { -d } else { d }
+}
+
+fn answer(search: &Search, chosen: &Candidate, direction: DVec3, blocked: &Blocked, framed: &Framed) -> Pull {
+    let search_words = "normals of the largest facets, their cross products, the axes, 160 directions over the half \
+                        sphere; the best varied where an undercut is left";
+    Pull {
+        direction,
+        undercut_mm2: chosen.undercut,
+        undercut_reach_mm: if chosen.undercut > 0.0 { shadow::reach(blocked, REACH_STEP) } else { 0.0 },
+        depth_mm: framed.mesh.bounds().1.z,
+        candidates: search.looked_at,
+        search: search_words.to_string(),
+    }
+}
+
+/// Widths of undercuts are found to this, mm: a fortieth of what snaps.
+const REACH_STEP: f64 = 0.01;
+
+/// Copies beside each other along the short side of the footprint, a wall apart.
+fn gang(one: Framed, spec: &MoldSpec) -> Framed {
+    if spec.count < 2 || spec.route == Route::LostWax {
+        return one;
+    }
+    let (lo, hi) = one.mesh.bounds();
+    let size = hi - lo;
+    let axis = usize::from(size.y < size.x);
+    // Whole millimetres, so that copies differ by round-off alone.
+    let pitch = (size[axis] + spec.figures.wall.value).ceil();
+    let mut mesh = Mesh::default();
+    for k in 0..spec.count {
+        let by = DVec3::AXES[axis] * (pitch * (k as f64 - (spec.count - 1) as f64 / 2.0));
+        let first = mesh.vertices.len() as u32;
+        mesh.vertices.extend(one.mesh.vertices.iter().map(|v| *v + by));
+        mesh.triangles.extend(one.mesh.triangles.iter().map(|t| t.map(|v| v + first)));
+    }
+    let mesh = stl::snapped(&mesh);
+    let (lo, hi) = mesh.bounds();
+    let snap = stl::snap_distance(lo.abs().max(hi.abs()).max_element());
+    Framed { mesh, snap, ..one }
+}

@@ -1,0 +1,121 @@
+//! Takes a mold and a folder; gives its files, what was measured on them after reading them back, and what OpenSCAD makes
+//! of the source.
+//!
+//! A measurement that misses its limit is a finding of severity error; the files stay, so that it can be looked at.
+
+use crate::check::openscad::OpenScad;
+use crate::check::{Check, Outcome};
+use crate::files::{Batch, FileError, stl};
+use crate::mesh::{Closure, Mesh};
+use crate::mold::checks::{self, Halves};
+use crate::mold::make::finding;
+use crate::mold::{Measured, Mold, MoldError, MoldReport, Piece, Route, WrittenPiece, scad};
+use crate::report::{Finding, Place, Severity};
+use std::path::Path;
+
+/// Stages all files of the mold, reads them back and measures them. The caller commits the batch.
+pub fn write(mold: &Mold, batch: &mut Batch) -> Result<MoldReport, MoldError> {
+    let mut back = Vec::new();
+    for piece in &mold.pieces {
+        back.push(stage(mold, piece, batch)?);
+    }
+    for extra in &mold.extras {
+        batch.stage(&extra.name, |out| out.write_all(&extra.bytes))?;
+    }
+    let maps = serde_json::to_vec(&mold.maps).unwrap_or_default();
+    let maps_name = format!("{}.maps.json", mold.name);
+    batch.stage(&maps_name, |out| out.write_all(&maps))?;
+    let mut report = report(mold, &back);
+    report.files.push(maps_name);
+    let on_files = measured(mold, &back)?;
+    report.findings.extend(on_files.iter().filter(|m| !m.kept).map(|m| of_measure(mold, m)));
+    report.measured.extend(on_files);
+    Ok(report)
+}
+
+fn stage(mold: &Mold, piece: &Piece, batch: &mut Batch) -> Result<Mesh, MoldError> {
+    let snapped = stl::snapped(&piece.mesh);
+    let path = batch.stage(&scad::file_name(mold, &piece.name), |out| stl::write(&snapped, out))?;
+    let read = std::fs::File::open(&path).and_then(|mut f| stl::read(&mut f));
+    read.map_err(|cause| MoldError::File(FileError { action: "read back", path, cause }))
+}
+
+fn measured(mold: &Mold, back: &[Mesh]) -> Result<Vec<Measured>, MoldError> {
+    let find = |name: &str| mold.pieces.iter().position(|p| p.name == name).map(|k| &back[k]);
+    match (mold.route, find("lower"), find("upper"), find("board")) {
+        (Route::Rigid, Some(lower), Some(upper), _) => Ok(checks::rigid(mold, &Halves { lower, upper })?),
+        (Route::Silicone, _, _, Some(board)) => Ok(checks::silicone(mold, board)?),
+        _ => Ok(vec![]),
+    }
+}
+
+fn of_measure(mold: &Mold, m: &Measured) -> Finding {
+    let what = format!("{}: {:.6} {}, limit {:.6} ({})", m.of, m.value, m.unit, m.limit, m.because);
+    finding(mold, Severity::Error, vec![], what, "do not use this mold; please report it with the part")
+}
+
+fn report(mold: &Mold, back: &[Mesh]) -> MoldReport {
+    let piece = |(p, m): (&Piece, &Mesh)| WrittenPiece {
+        name: p.name.clone(),
+        kind: p.kind,
+        file: scad::file_name(mold, &p.name),
+        copies: p.copies,
+        pull: p.pull,
+        volume_mm3: m.volume(),
+        watertight: m.closure() == Closure::Closed,
+        bodies: m.topology().bodies,
+        triangles: m.triangles.len(),
+        checks: vec![],
+    };
+    let pieces: Vec<WrittenPiece> = mold.pieces.iter().zip(back).map(piece).collect();
+    let files =
+        pieces.iter().map(|p| p.file.clone()).chain(mold.extras.iter().map(|e| e.name.clone())).collect();
+    let mut findings = mold.findings.clone();
+    findings.extend(pieces.iter().filter(|p| !p.watertight).map(|p| {
+        let what = format!("{} is not closed as written", p.file);
+        finding(mold, Severity::Error, vec![], what, "do not use this file; please report it with the part")
+    }));
+    MoldReport {
+        name: mold.name.clone(),
+        route: mold.route,
+        pull: mold.pull.clone(),
+        parting: mold.parting.clone(),
+        low_draft_mm2: mold.maps.low_draft_mm2,
+        pieces,
+        files,
+        volumes: mold.volumes.clone(),
+        measured: mold.measured.clone(),
+        steps: mold.steps.clone(),
+        findings,
+    }
+}
+
+/// Lets OpenSCAD make each piece from the source in the folder, and adds what it finds to the report.
+pub fn check_openscad(report: &mut MoldReport, folder: &Path, program: &str) {
+    let source = folder.join(format!("{}.scad", report.name));
+    let Ok(openscad) = OpenScad::new(program, &std::env::temp_dir()) else { return };
+    for piece in report.pieces.iter_mut().filter(|p| p.copies > 0) {
+        let check = openscad.same(
+            &source,
+            &format!("half=\"{}\"", piece.name),
+            &folder.join(&piece.file),
+            piece.volume_mm3,
+        );
+        report.findings.extend(of_check(&report.name, &piece.file, &check));
+        piece.checks.push(check);
+    }
+}
+
+fn of_check(name: &str, file: &str, check: &Check) -> Option<Finding> {
+    let (severity, why) = match &check.outcome {
+        Outcome::Passed => return None,
+        Outcome::Failed(why) => (Severity::Error, why),
+        Outcome::NotRun(why) => (Severity::Note, why),
+    };
+    Some(Finding {
+        severity,
+        place: Place { parts: vec![name.to_string()], at: vec![] },
+        what: format!("{file}, {}, {}: {why}", check.by, check.of),
+        remedy: "compare the two solids before making either".into(),
+    })
+}

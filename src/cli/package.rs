@@ -1,0 +1,130 @@
+//! Takes an assembly in place and what the command line asks for; makes a fabricator's package and tells what is in it.
+//!
+//! Not promised: anything beyond what `weavelock_fab::package` promises.
+
+use super::args::{Common, Fab};
+use super::load::Placed;
+use super::make::{self, Checkers, Wish};
+use super::pictured;
+use super::told::{News, Told, Trouble};
+use crate::fabricate;
+use crate::report::content::{Chapter, Column, Table};
+use serde::Serialize;
+use std::path::Path;
+use weavelock_fab::package::{self, Order, PackageReport, Replace};
+use weavelock_fab::process::{self, Measured, Overrides, Process};
+use weavelock_fab::report::Severity;
+
+#[derive(Serialize)]
+struct PackageAnswer<'a> {
+    verb: &'a str,
+    folder: String,
+    #[serde(flatten)]
+    package: &'a PackageReport,
+}
+
+pub fn fab(placed: &Placed, asked: &Fab, common: &Common) -> Result<Told, Trouble> {
+    let recipe = make::recipe(placed, &wish(asked)?, Checkers::of(asked.check))?;
+    let replace = if asked.force { Replace::Allowed } else { Replace::Never };
+    let order = Order { replace, draw: &pictured::draw };
+    if asked.check && !common.quiet {
+        eprintln!("making the package and asking other programs ...");
+    }
+    let made = package::pack(&fabricate::job(&placed.joined), &recipe, &order, &asked.out);
+    let mut package = made.map_err(|e| Trouble::Word(format!("error: {e}")))?;
+    placed_in(&mut package, &asked.out);
+    Ok(told(&package, &asked.out))
+}
+
+fn wish(asked: &Fab) -> Result<Wish, Trouble> {
+    let wrong = |what: String| Trouble::Word(format!("error: {what}"));
+    let part = |text: &String| match text.split_once('=') {
+        Some((id, name)) if !id.is_empty() && !name.is_empty() => Ok((id.to_string(), name.to_string())),
+        _ => Err(wrong(format!(
+            "{text:?} is no part and process\n  hint: as in --part weft-0=silicone-platinum"
+        ))),
+    };
+    let measured = |text: &String| Measured::parse(text).map_err(wrong);
+    Ok(Wish {
+        process: asked.process.clone(),
+        parts: asked.parts.iter().map(part).collect::<Result<_, _>>()?,
+        own: Overrides {
+            clearance: asked.clearance,
+            measured: asked.measured.iter().map(measured).collect::<Result<_, _>>()?,
+            bed: asked.bed.clone(),
+            elephant_foot: asked.elephant_foot,
+            flatten: asked.flatten,
+            ..Overrides::default()
+        },
+    })
+}
+
+/// Names in the answer are paths that can be opened from here; those in the package's own list are below it.
+fn placed_in(package: &mut PackageReport, out: &Path) {
+    let from_here = |file: &mut Option<String>| {
+        if let Some(name) = file {
+            *name = out.join(&*name).display().to_string();
+        }
+    };
+    for part in &mut package.report.parts {
+        from_here(&mut part.file);
+        from_here(&mut part.obj);
+    }
+}
+
+fn told(package: &PackageReport, out: &Path) -> Told {
+    let news = News::of(package.report.worst() != Some(Severity::Error));
+    let answer = PackageAnswer { verb: "fab", folder: out.display().to_string(), package };
+    let mut chapter = make::fab_chapter(&package.report, out);
+    chapter.facts.push(("plates".into(), plates(package)));
+    let first = out.join("README.md").display().to_string();
+    chapter.facts.push(("read first".into(), first));
+    Told::new(news, &answer, &package.report.name, "Package", chapter)
+}
+
+fn plates(package: &PackageReport) -> String {
+    let grams: f64 = package.plates.iter().filter_map(|p| p.grams).sum();
+    let sliced = if grams > 0.0 { format!(", {grams:.1} g of filament as sliced") } else { String::new() };
+    format!("{}{sliced}", package.plates.len())
+}
+
+#[derive(Serialize)]
+struct ProcessesAnswer {
+    verb: &'static str,
+    processes: Vec<Process>,
+    beds: Vec<process::Bed>,
+}
+
+/// The list of processes, or the text of one.
+pub fn processes(name: Option<&str>) -> Result<Told, Trouble> {
+    let wrong = |e: process::ProcessError| Trouble::Word(format!("error: {e}"));
+    let names: Vec<&str> = name.map_or_else(|| process::names().collect(), |n| vec![n]);
+    let all: Vec<Process> =
+        names.iter().map(|n| Process::find(n).map_err(wrong)).collect::<Result<_, _>>()?;
+    let answer = ProcessesAnswer { verb: "processes", processes: all.clone(), beds: process::beds() };
+    if let Some(text) = name.and_then(process::source) {
+        let chapter = Chapter { figure: text.lines().map(String::from).collect(), ..Chapter::default() };
+        return Ok(Told { bare: Some(text.to_string()), ..Told::new(News::Good, &answer, "", "", chapter) });
+    }
+    let row = |p: &Process| {
+        let steps = p.steps.iter().map(|s| s.name.as_str()).collect::<Vec<_>>().join(", ");
+        vec![
+            p.name.clone(),
+            p.title.clone(),
+            p.clearance.value.to_string(),
+            p.least_wall.value.to_string(),
+            steps,
+        ]
+    };
+    let head = ["name", "", "air mm", "wall mm", "steps"].map(Column::words).to_vec();
+    let rows = all.iter().map(row).collect();
+    let caption =
+        "Copy one with: weavelock processes NAME > my.toml; then: weavelock fab FILE --process my.toml"
+            .into();
+    let headline = format!("{} processes come along.", all.len());
+    let beds = process::beds().iter().map(|b| b.name.clone()).collect::<Vec<_>>().join(", ");
+    let facts = vec![("beds".to_string(), beds)];
+    let chapter =
+        Chapter { headline, facts, tables: vec![Table { caption, head, rows }], ..Chapter::default() };
+    Ok(Told::new(News::Good, &answer, "Processes", "Processes", chapter))
+}
