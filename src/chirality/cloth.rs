@@ -3,7 +3,7 @@
 //! Not promised: tiles of other phases than 0 but for [`Cloth::other_phases`], which tries those that the draft allows.
 
 use super::answer::{HandAnswer, PairAnswer, TileAnswer, WarpIs};
-use super::draft::{Reach, Set, Squares, Symmetry, Woven};
+use super::draft::{Near, Reach, Set, Symmetry, Woven};
 use super::judge::{self, Findings};
 use super::shape::{SPREAD, Scale, Shape};
 use crate::assembly::layout::first_cut;
@@ -29,13 +29,13 @@ pub struct Shaped {
     pub piece: Piece,
     pub shape: Shape,
     pub scale: Scale,
-    /// The crossings that shape it.
-    pub around: Squares,
+    /// The sites that shape it.
+    pub near: Near,
 }
 
 impl Shaped {
     pub fn set(&self) -> Set<'_> {
-        Set { pieces: std::slice::from_ref(&self.piece), around: &self.around }
+        Set { pieces: std::slice::from_ref(&self.piece), near: &self.near }
     }
 }
 
@@ -65,12 +65,21 @@ impl<'a> Cloth<'a> {
 
     pub fn shaped(&self, pieces: &[Piece]) -> Result<Vec<Shaped>, TileError> {
         let tiles = tile::tiles(&self.sites, &self.lattice, pieces)?;
-        Ok(tiles.iter().map(|t| self.placed(t.piece, &t.solid, DAffine3::IDENTITY, around(t))).collect())
+        Ok(tiles.iter().map(|t| self.placed(t.piece, &t.solid, DAffine3::IDENTITY, self.near(t))).collect())
     }
 
-    pub fn placed(&self, piece: Piece, solid: &Solid, pose: DAffine3, around: Squares) -> Shaped {
+    /// A tile's sites and those that they face.
+    fn near(&self, tile: &Tile) -> Near {
+        let faced = tile.across.iter().filter_map(|(_, across)| match across {
+            Across::Site(s) => Some(*s),
+            Across::Face(_) => None,
+        });
+        faced.chain(tile::of_piece(&self.sites, tile.piece)).collect()
+    }
+
+    pub fn placed(&self, piece: Piece, solid: &Solid, pose: DAffine3, near: Near) -> Shaped {
         let scale = scale([solid], self.profile);
-        Shaped { piece, shape: Shape::new([(solid, pose)], scale), scale, around }
+        Shaped { piece, shape: Shape::new([(solid, pose)], scale), scale, near }
     }
 
     /// The symmetries of the weave that carry one set of pieces to another.
@@ -117,8 +126,8 @@ impl<'a> Cloth<'a> {
             let cut = warp.piece.moved((0, phase as i32));
             for weft in wefts {
                 // No tile but these can follow from the weft's by the weave; only then it is worth to be cut.
-                let none = Squares::new();
-                let target = Set { pieces: &[cut], around: &none };
+                let none = Near::new();
+                let target = Set { pieces: &[cut], near: &none };
                 if self.symmetries(weft.set(), target).iter().any(|s| s.1 == Reach::Weave) {
                     let moved = self.shaped(&[cut])?;
                     answers.extend(moved.iter().map(|warp| self.pair_answer(weft, warp, phase)));
@@ -127,15 +136,6 @@ impl<'a> Cloth<'a> {
         }
         Ok(answers)
     }
-}
-
-/// The unit squares of a tile's sites and of those that it faces.
-fn around(tile: &Tile) -> Squares {
-    let faced = tile.across.iter().filter_map(|(_, across)| match across {
-        Across::Site(s) => Some((s.x, s.y)),
-        Across::Face(_) => None,
-    });
-    faced.chain(tile::squares(tile.piece)).collect()
 }
 
 /// What distances mean on tiles: vertices are rounded to multiples of 2^-[`VERTEX_BITS`], sites to 2^-[`SITE_BITS`].

@@ -1,11 +1,11 @@
 //! Takes a weave, its sites and pieces; gives the isometries of the weave that carry pieces to pieces.
 //!
 //! Complete for isometries that carry crossings to crossings, of the whole, endless weave or of the surroundings that
-//! shape the pieces alone: a Voronoi cell is made by its neighbours, so where all crossings that hold a neighbour of a
-//! piece's sites go to such crossings, there and back, the piece goes to the piece. Not promised: isometries that carry
+//! shape the pieces alone: a Voronoi cell is made by its neighbours, so where a piece's sites and all that these face go to
+//! sites, there and back, the piece goes to the piece. Not promised: isometries that carry
 //! crossings elsewhere; the solids are searched for those.
 
-use crate::sites::Sites;
+use crate::sites::{Site, Sites};
 use crate::tile::exact::Grid;
 use crate::tile::{Lattice, Piece};
 use crate::weave::{Draft, Kind, Strand};
@@ -27,18 +27,18 @@ pub struct Symmetry {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Reach {
     Weave,
-    /// The crossings that shape the pieces, but not the whole weave.
+    /// The sites that shape the pieces, but not the whole weave.
     Surroundings,
 }
 
-/// Unit squares of crossings.
-pub type Squares = BTreeSet<(i32, i32)>;
+/// The sites that shape pieces: their own, and those that these face.
+pub type Near = BTreeSet<Site>;
 
-/// Pieces with the crossings that shape them.
+/// Pieces with the sites that shape them.
 #[derive(Clone, Copy)]
 pub struct Set<'a> {
     pub pieces: &'a [Piece],
-    pub around: &'a Squares,
+    pub near: &'a Near,
 }
 
 impl Symmetry {
@@ -48,16 +48,13 @@ impl Symmetry {
         Symmetry { against: if self.exchange { [v, u] } else { [u, v] }, shift: [0, 0], ..*self }
     }
 
-    /// Whether the draft goes to the draft and sites to sites at these crossings.
-    fn keeps_around(&self, woven: &Woven, around: &Squares) -> bool {
-        around.iter().all(|&(x, y)| {
-            let (u, v) = self.square((x, y));
-            let turned = self.exchange ^ self.upside_down;
-            let strand = |kind, index| Strand { kind, index };
-            woven.draft.weft_over(v, u) == (woven.draft.weft_over(y, x) ^ turned)
-                && [(strand(Kind::Weft, y), x), (strand(Kind::Warp, x), y)]
-                    .into_iter()
-                    .all(|(s, c)| self.keeps_crossing(woven.sites, s, c, woven.lift, woven.slack))
+    /// Whether these sites go to sites.
+    fn keeps_near(&self, woven: &Woven, near: &Near) -> bool {
+        near.iter().all(|&site| {
+            let (x, y) = self.square((site.x, site.y));
+            let image = self.point(woven.sites.at(site), woven.lift);
+            let meets = |p: Grid| (0..3).all(|d| (p[d] - image[d]).abs() <= woven.slack);
+            woven.sites.in_square(x, y).any(|other| meets(woven.sites.at(other)))
         })
     }
 
@@ -192,7 +189,7 @@ impl Woven<'_> {
                 return Some((there, Reach::Weave));
             }
             let back = shifted(linear.back(), to.pieces, from.pieces)?;
-            let near = there.keeps_around(self, from.around) && back.keeps_around(self, to.around);
+            let near = there.keeps_near(self, from.near) && back.keeps_near(self, to.near);
             near.then_some((there, Reach::Surroundings))
         };
         [false, true].into_iter().flat_map(Symmetry::linear).filter_map(fits).collect()

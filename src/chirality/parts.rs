@@ -8,7 +8,7 @@ use super::answer::{
     Touch,
 };
 use super::cloth::{self, Cloth, Shaped};
-use super::draft::{Set, Squares};
+use super::draft::{Near, Set};
 use super::judge::{self, Findings};
 use super::kin;
 use super::shape::{Scale, Shape};
@@ -53,21 +53,21 @@ pub fn of_woven(spec: &WovenSpec, built: &Woven, patches: &[Patch]) -> Result<Of
     let cloth = Cloth::new(&spec.weave, &spec.profile)?;
     let assembly = &built.assembly;
     let scale = cloth::scale(&assembly.solids, &spec.profile);
-    let around: Vec<Squares> = assembly.ids().map(|p| built.around(p).collect()).collect();
-    let all: Squares = around.iter().flatten().copied().collect();
-    let set = Set { pieces: &built.pieces, around: &all };
+    let near: Vec<Near> = assembly.ids().map(|p| built.near(p).collect()).collect();
+    let all: Near = near.iter().flatten().copied().collect();
+    let set = Set { pieces: &built.pieces, near: &all };
     let symmetries = cloth.symmetries(set, set);
     let whole = judge::hand(&whole(assembly, scale), scale, Some((&symmetries, spec.profile.lift)));
     // Parts of one solid are translates of each other: any of them stands for all.
     let placed = |k: usize| {
         let p = assembly.ids().find(|&p| assembly.part(p).solid == k)?;
         let part = assembly.part(p);
-        Some(cloth.placed(built.pieces[p.at()], &assembly.solids[k], part.pose, around[p.at()].clone()))
+        Some(cloth.placed(built.pieces[p.at()], &assembly.solids[k], part.pose, near[p.at()].clone()))
     };
     let shaped: Vec<Shaped> = (0..assembly.solids.len()).filter_map(placed).collect();
     let hands: Vec<HandAnswer> = shaped.par_iter().map(|s| cloth.hand(s)).collect();
     let compare = |i: usize, j: usize| cloth.compare(&shaped[i], &shaped[j]);
-    let neighbours = neighbours(&cloth, built, patches, &around);
+    let neighbours = neighbours(&cloth, built, patches, &near);
     Ok(gathered(assembly, whole, &hands, compare, neighbours))
 }
 
@@ -96,7 +96,7 @@ fn gathered(
 }
 
 /// The hands of pairs; pairs that a translation of the weave joins have one hand.
-fn neighbours(cloth: &Cloth, built: &Woven, patches: &[Patch], around: &[Squares]) -> Vec<NeighboursAnswer> {
+fn neighbours(cloth: &Cloth, built: &Woven, patches: &[Patch], near: &[Near]) -> Vec<NeighboursAnswer> {
     let assembly = &built.assembly;
     let pieces = |(a, b): (PartIx, PartIx)| [built.pieces[a.at()], built.pieces[b.at()]];
     let key = |pair: (PartIx, PartIx)| {
@@ -111,9 +111,9 @@ fn neighbours(cloth: &Cloth, built: &Woven, patches: &[Patch], around: &[Squares
     }
     let hand = |(key, &pair): (&[Piece; 2], &(PartIx, PartIx))| {
         let scale = cloth::scale([assembly.solid(pair.0), assembly.solid(pair.1)], cloth.profile);
-        let near: Squares = around[pair.0.at()].union(&around[pair.1.at()]).copied().collect();
+        let both: Near = near[pair.0.at()].union(&near[pair.1.at()]).copied().collect();
         let own = pieces(pair);
-        let set = Set { pieces: &own, around: &near };
+        let set = Set { pieces: &own, near: &both };
         let symmetries = cloth.symmetries(set, set);
         let shape = some(assembly, &[pair.0, pair.1], scale);
         (*key, judge::hand(&shape, scale, Some((&symmetries, cloth.profile.lift))))

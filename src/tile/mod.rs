@@ -55,11 +55,6 @@ impl Piece {
     }
 }
 
-/// The unit squares of a piece's own crossings.
-pub fn squares(piece: Piece) -> impl Iterator<Item = (i32, i32)> {
-    (piece.from..piece.to).map(move |c| Piece { from: c, ..piece }.start())
-}
-
 /// The solid of a piece, in crossings.
 #[derive(Clone, Debug)]
 pub struct Tile {
@@ -94,7 +89,8 @@ fn cells(sites: &Sites, lattice: &Lattice, pieces: &[Piece]) -> Result<Cells, Un
     wanted.into_par_iter().map(|s| Ok((s, voronoi::cell(sites, s)?))).collect()
 }
 
-fn of_piece(sites: &Sites, piece: Piece) -> impl Iterator<Item = Site> + '_ {
+/// A piece's own sites, along its strand.
+pub fn of_piece(sites: &Sites, piece: Piece) -> impl Iterator<Item = Site> + '_ {
     (piece.from..piece.to).flat_map(move |c| sites.of_strand(piece.strand, c))
 }
 
