@@ -60,6 +60,15 @@ impl Mesh {
     }
 
     pub fn closure(&self) -> Closure {
+        let open = self.loose_edges();
+        match open.first() {
+            None => Closure::Closed,
+            Some(&(v, _)) => Closure::Open { edges: open.len(), at: self.vertices[v as usize] },
+        }
+    }
+
+    /// Edges that are not between two opposite triangles, each by its lower and its higher vertex.
+    pub fn loose_edges(&self) -> Vec<(u32, u32)> {
         let mut uses: BTreeMap<(u32, u32), (u32, u32)> = BTreeMap::new();
         for t in &self.triangles {
             for k in 0..3 {
@@ -68,11 +77,17 @@ impl Mesh {
                 if a < b { entry.0 += 1 } else { entry.1 += 1 }
             }
         }
-        let open: Vec<_> = uses.iter().filter(|(_, n)| **n != (1, 1)).map(|(e, _)| e.0).collect();
-        match open.first() {
-            None => Closure::Closed,
-            Some(&v) => Closure::Open { edges: open.len(), at: self.vertices[v as usize] },
-        }
+        uses.into_iter().filter(|(_, n)| *n != (1, 1)).map(|(e, _)| e).collect()
+    }
+
+    /// Whether every edge is used as often in one direction as in the other, and some more than once: sheets that touch
+    /// in an edge.
+    pub fn is_pinched(&self) -> bool {
+        let mut uses: BTreeMap<(u32, u32), i64> = BTreeMap::new();
+        let sides = |t: &[u32; 3]| [(t[0], t[1]), (t[1], t[2]), (t[2], t[0])];
+        self.triangles.iter().flat_map(sides).for_each(|e| *uses.entry(e).or_default() += 1);
+        let balanced = uses.iter().all(|((a, b), n)| uses.get(&(*b, *a)) == Some(n));
+        balanced && uses.values().any(|n| *n > 1)
     }
 
     /// Bodies and genus of a closed mesh (V - E + F = 2 bodies - 2 genus, with E = 3F / 2).

@@ -4,6 +4,7 @@ use crate::check::Check;
 use crate::gap::Gap;
 use crate::ledger::Entry;
 use crate::mesh::{Closure, Mesh};
+use crate::mold::Kind;
 use crate::process::{Figure, Process};
 use crate::wall::Walls;
 use glam::DVec3;
@@ -140,15 +141,25 @@ pub struct Report {
     pub parts: Vec<PartReport>,
     pub gaps: Vec<Gap>,
     pub pair_checks: Vec<PairCheck>,
-    /// Always empty so far; see `molds_note`.
-    pub molds: Vec<Mold>,
+    /// Pieces of molds; a package makes them.
+    pub molds: Vec<MoldFile>,
     pub molds_note: String,
     pub findings: Vec<Finding>,
 }
 
-/// A mold; none can be made yet, so there is no value of this type.
+/// A piece of a mold as written.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub enum Mold {}
+pub struct MoldFile {
+    /// The mold that it belongs to.
+    pub mold: String,
+    pub file: String,
+    pub kind: Kind,
+    /// How many to make.
+    pub copies: usize,
+    pub volume_mm3: f64,
+    pub watertight: bool,
+    pub checks: Vec<Check>,
+}
 
 impl Report {
     /// The gravest severity among the findings.

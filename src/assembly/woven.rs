@@ -126,6 +126,19 @@ fn rim(pieces: &[Piece]) -> Vec<bool> {
 }
 
 impl Woven {
+    /// The unit squares that hold the part's sites or sites that it faces, outside and in.
+    pub fn around(&self, part: PartIx) -> impl Iterator<Item = (i32, i32)> + '_ {
+        let (dx, dy) = self.shifts[part.at()];
+        let of = |s: &Site| (s.x, s.y);
+        let pairs = &self.across[self.assembly.part(part).solid];
+        let squares = pairs.iter().flat_map(move |(own, across)| match across {
+            Across::Site(s) => [of(own), of(s)],
+            Across::Face(_) => [of(own); 2],
+        });
+        let inside = tile::squares(self.pieces[part.at()]);
+        squares.map(move |(x, y)| (x + dx, y + dy)).chain(inside)
+    }
+
     /// For each facet of a part's solid: the part that it touches, if any.
     pub fn faced(&self, part: PartIx) -> impl Iterator<Item = Option<PartIx>> + '_ {
         let (dx, dy) = self.shifts[part.at()];

@@ -148,8 +148,8 @@ fn words(a: &FlexAnswer) -> Vec<String> {
     }
     if !a.unproven.is_empty() {
         words.push(format!(
-            "{} sets came apart by no plan that was looked for, and are not proven locked: straight moves of parts and \
-             groups were tried, turns and moves in stages were not.",
+            "Sets that no plan took apart though they are not proven locked: {}. Straight moves of parts and groups were \
+             tried, turns and moves in stages were not.",
             a.unproven.len()
         ));
     }

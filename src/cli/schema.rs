@@ -5,7 +5,9 @@
 use super::atlas::AtlasAnswer;
 use super::told::{News, Told, Trouble};
 use crate::chirality::answer::Hands;
-use crate::report::answer::{CheckAnswer, FlexAnswer, PlanAnswer, RepeatsAnswer, WeaveAnswer};
+use crate::report::answer::{
+    BlockingAnswer, CheckAnswer, FlexAnswer, PlanAnswer, RepeatsAnswer, WeaveAnswer,
+};
 use crate::report::content::{Chapter, Tone};
 use crate::spec::shape::SpecFile;
 use crate::verify::Verified;
@@ -17,6 +19,7 @@ pub fn schema() -> Result<Told, Trouble> {
         ("spec", schema_for!(SpecFile)),
         ("check", schema_for!(CheckAnswer)),
         ("plan", schema_for!(PlanAnswer)),
+        ("blocking", schema_for!(BlockingAnswer)),
         ("flex", schema_for!(FlexAnswer)),
         ("repeats", schema_for!(RepeatsAnswer)),
         ("weave", schema_for!(WeaveAnswer)),

@@ -20,8 +20,8 @@ use crate::sequence::{Fault, Plan};
 use std::time::Instant;
 use symmetry::Symmetry;
 
-/// Some minutes at most: hundreds of questions about twenty woven parts of eight crossings, or 400 about eighty bricks.
-pub const WORK: u64 = 3_000_000;
+/// About a hundred questions about eighty bricks, or about sixteen woven parts of sixteen crossings.
+pub const WORK: u64 = 1_000_000;
 
 /// Vertices of woven tiles are rounded to 2^-40 of a crossing; a frame set on parts' centres carries that to no more
 /// than 2^-30 across a thousand crossings.

@@ -26,12 +26,12 @@ use std::collections::BTreeMap;
 /// More unknowns than this are not asked: the factor is dense.
 pub const MOST_UNKNOWNS: usize = 1500;
 
-/// Linear programs that tighten the bound, and the unknowns up to which they are worth it.
-const MOST_PROGRAMS: usize = 24;
+/// Linear programs that tighten a bound, and the unknowns up to which they are worth it: a tenth of a second or so.
+pub const PROGRAMS: usize = 16;
 const MOST_UNKNOWNS_OF_PROGRAMS: usize = 120;
 
-/// Rows up to which a linear program sees all, not only those that carry a force.
-const MOST_ROWS_OF_PROGRAMS: usize = 4000;
+/// Products of rows and parts up to which motions of single parts are tried for an upper bound.
+const MOST_SINGLES: usize = 2_000_000;
 
 const UNIT: f64 = f64::EPSILON / 2.0;
 
@@ -79,8 +79,9 @@ pub struct Bound {
     pub near: Vec<Vec<f64>>,
 }
 
-/// The bound for a lock; none where there are too many unknowns, or the rows that carry a force are nearly dependent.
-pub fn lock(problem: &Weighted, stress: &Stress) -> Option<Bound> {
+/// The bound for a lock, tightened by up to so many linear programs; none where there are too many unknowns, or the rows
+/// that carry a force are nearly dependent.
+pub fn lock(problem: &Weighted, stress: &Stress, programs: usize) -> Option<Bound> {
     let n = problem.unknowns.count;
     if n == 0 {
         return Some(Bound { lower: f64::INFINITY, near: Vec::new() });
@@ -95,15 +96,14 @@ pub fn lock(problem: &Weighted, stress: &Stress) -> Option<Bound> {
     let mut bounds: Vec<(f64, Goal)> = goals.into_par_iter().map(bound).collect();
     let mut near = vec![factor.weakest()];
     if n <= MOST_UNKNOWNS_OF_PROGRAMS {
-        let all = problem.rows.len() <= MOST_ROWS_OF_PROGRAMS;
-        tighten(if all { problem } else { &some }, &mut bounds, &mut near);
+        tighten(&some, programs, &mut bounds, &mut near);
     }
     let lower = bounds.iter().map(|b| b.0).fold(f64::INFINITY, f64::min);
     Some(Bound { lower, near })
 }
 
-/// The angle by which every normal may be turned so that the rows allow one of these motions, or its reverse: the
-/// least found. A row that is closed and does not move needs no turn.
+/// The angle by which every normal may be turned so that the rows allow one of these motions, one of a single part
+/// along or about an axis, or the reverse of one: the least found. A row that is closed and does not move needs no turn.
 pub fn shown(rows: &[Row], unknowns: &Unknowns, motions: &[Vec<f64>]) -> Option<f64> {
     let needed = |x: &[f64], sign: f64| {
         let of = |row: &Row| {
@@ -113,6 +113,9 @@ pub fn shown(rows: &[Row], unknowns: &Unknowns, motions: &[Vec<f64>]) -> Option<
         };
         rows.iter().map(of).fold(0.0, f64::max)
     };
+    let singles = if rows.len() * unknowns.count <= 6 * MOST_SINGLES { unknowns.count } else { 0 };
+    let single = |k: usize| (0..unknowns.count).map(|c| f64::from(u8::from(c == k))).collect::<Vec<f64>>();
+    let motions: Vec<Vec<f64>> = motions.iter().cloned().chain((0..singles).map(single)).collect();
     let all = motions.iter().flat_map(|x| [1.0, -1.0].map(|sign| needed(x, sign)));
     // Room for the rounding of the speeds.
     all.reduce(f64::min).map(|angle| angle * (1.0 + 1e-9))
@@ -172,9 +175,9 @@ fn velocity_of(twists: &BTreeMap<PartIx, super::Twist>) -> impl Fn(PartIx, DVec3
 }
 
 /// Solves linear programs for the goals with the least bounds until the least has been solved for.
-fn tighten(problem: &Weighted, bounds: &mut [(f64, Goal)], near: &mut Vec<Vec<f64>>) {
+fn tighten(problem: &Weighted, programs: usize, bounds: &mut [(f64, Goal)], near: &mut Vec<Vec<f64>>) {
     let mut done = vec![false; bounds.len()];
-    for _ in 0..MOST_PROGRAMS {
+    for _ in 0..programs {
         let least = (0..bounds.len()).min_by(|&i, &j| bounds[i].0.total_cmp(&bounds[j].0));
         let Some(k) = least.filter(|&k| !done[k]) else { break };
         done[k] = true;
@@ -294,7 +297,7 @@ mod tests {
         let stress = Stress { forces, rank: 3, residual: 0.0, pivot_ratio: 1.0 };
         let weights = speeds(&rows, &unknowns);
         let problem = Weighted { rows: rows.clone(), unknowns: &unknowns, weights };
-        let found = lock(&problem, &stress).unwrap();
+        let found = lock(&problem, &stress, PROGRAMS).unwrap();
         let truth = (1.0 / 3.0_f64.sqrt()).asin();
         assert!(found.lower <= truth && found.lower > 0.9 / 3.0_f64.sqrt(), "{}", found.lower);
         let diagonal = vec![vec![1.0, 1.0, 1.0]];

@@ -13,9 +13,11 @@ mod reduce;
 mod rows;
 mod sparse;
 mod system;
+mod vouch;
 
-pub use decide::{Force, Gap, Motion, Stress, Twist, Verdict, decide};
+pub use decide::{Force, Gap, Motion, ROUND_OFF, Stress, Twist, Verdict, decide};
 pub use rows::{Freedom, Row, Unknowns, rows};
+pub use vouch::check_loose;
 
 use crate::assembly::{Assembly, PartIx};
 use crate::contact::Patch;

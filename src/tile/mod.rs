@@ -55,6 +55,11 @@ impl Piece {
     }
 }
 
+/// The unit squares of a piece's own crossings.
+pub fn squares(piece: Piece) -> impl Iterator<Item = (i32, i32)> {
+    (piece.from..piece.to).map(move |c| Piece { from: c, ..piece }.start())
+}
+
 /// The solid of a piece, in crossings.
 #[derive(Clone, Debug)]
 pub struct Tile {

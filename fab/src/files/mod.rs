@@ -28,7 +28,7 @@ fn hint(cause: &io::Error) -> &'static str {
             "the disk is full; free some space, nothing was left behind"
         }
         io::ErrorKind::NotADirectory | io::ErrorKind::AlreadyExists => {
-            "a file stands where the folder should be"
+            "a file stands where a folder should be"
         }
         io::ErrorKind::IsADirectory => "a folder stands where the file should be",
         io::ErrorKind::NotFound => "a folder on the way to it does not exist",

@@ -149,10 +149,7 @@ fn there(path: &Path) -> FileError {
     FileError {
         action: "write",
         path: path.to_path_buf(),
-        cause: io::Error::new(
-            io::ErrorKind::AlreadyExists,
-            "it is there already; name another folder, or replace it with --force",
-        ),
+        cause: io::Error::other("it is there already, and is replaced only with --force"),
     }
 }
 

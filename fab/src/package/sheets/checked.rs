@@ -48,7 +48,8 @@ fn others(p: &PackageReport) -> Vec<Vec<String>> {
     let pairs = p.report.pair_checks.iter().map(|q| row(&format!("{} and {}", q.a, q.b), &q.check));
     let plates = p.plates.iter().flat_map(|q| q.checks.iter().map(|c| row(&q.file, c)));
     let whole = p.assembly.iter().flat_map(|a| a.checks.iter().map(|c| row(&a.file, c)));
-    parts.chain(pairs).chain(plates).chain(whole).collect()
+    let molds = p.report.molds.iter().flat_map(|m| m.checks.iter().map(|c| row(&m.file, c)));
+    parts.chain(pairs).chain(plates).chain(whole).chain(molds).collect()
 }
 
 fn row(what: &str, check: &Check) -> Vec<String> {
