@@ -1,7 +1,7 @@
 """Takes the rows that `cargo bench --bench verdicts` wrote and the times that it printed; gives a table against HiGHS.
 
 HiGHS solves the self-stress problem on the full rows: least sum of y with A^T y = 0, y >= 1, by its simplex with its
-own presolve, one thread. Where it says infeasible the assembly can open; where the rows then lack rank it slides,
+own presolve, one thread. Both times are processor time, all threads together: the machine may be shared. Where it says infeasible the assembly can open; where the rows then lack rank it slides,
 which HiGHS is not asked. Ratios within one run count.
 
     cargo bench --bench verdicts -- FOLDER NAME... > times.jsonl
@@ -52,16 +52,16 @@ def self_stress(starts, columns, values, unknowns):
 
 
 def solve(lp, limit):
-    """Seconds of the run alone, and how it ended."""
+    """Processor seconds of the run alone, and how it ended."""
     highs = highspy.Highs()
     highs.setOptionValue("output_flag", False)
     highs.setOptionValue("solver", "simplex")
     highs.setOptionValue("threads", 1)
     highs.setOptionValue("time_limit", float(limit))
     highs.passModel(lp)
-    start = time.perf_counter()
+    start = time.process_time()
     highs.run()
-    return time.perf_counter() - start, highs.modelStatusToString(highs.getModelStatus())
+    return time.process_time() - start, highs.modelStatusToString(highs.getModelStatus())
 
 
 def exponent(points):
@@ -80,7 +80,7 @@ def main():
         case = json.loads(line)
         rows = read_rows(f"{folder}/{case['name'].replace('/', '_')}.rows")
         seconds, ended = solve(self_stress(*rows), limit)
-        own = case["decide_s"]
+        own = case["decide_cpu_s"]
         stopped = ">" if "limit" in ended.lower() else ""
         word = {"Optimal": "balanced"}.get(ended, ended.lower())
         name = case["name"].split("/")[-1].removesuffix(".toml")

@@ -78,23 +78,36 @@ fn timed(folder: &Path, name: &str) -> Fallible<String> {
     let still: Vec<PartIx> = both.held.iter().copied().chain(both.fixed).collect();
     let rows = rows(&joined.patches, Freedom::Rigid);
     let unknowns = Unknowns::new(&joined.assembly, &rows, &still, Freedom::Rigid);
-    let mut times = Vec::new();
+    let (mut times, mut processor) = (Vec::new(), Vec::new());
     let mut word = "";
     while times.iter().sum::<f64>() < ENOUGH && times.len() < MOST_RUNS {
-        let start = Instant::now();
+        let (start, busy) = (Instant::now(), processor_seconds());
         word = decide(&rows, &unknowns).word();
         times.push(start.elapsed().as_secs_f64());
+        processor.push(processor_seconds() - busy);
     }
     times.sort_by(f64::total_cmp);
+    processor.sort_by(f64::total_cmp);
     write_rows(&folder.join(format!("{}.rows", name.replace('/', "_"))), &rows, &unknowns)?;
     Ok(format!(
         "{{\"name\": \"{name}\", \"parts\": {}, \"rows\": {}, \"unknowns\": {}, \"verdict\": \"{word}\", \
-         \"contacts_s\": {contacts:.6}, \"check_s\": {check:.6}, \"decide_s\": {:.6}}}",
+         \"contacts_s\": {contacts:.6}, \"check_s\": {check:.6}, \"decide_s\": {:.6}, \
+         \"decide_cpu_s\": {:.6}}}",
         joined.assembly.parts.len(),
         rows.len(),
         unknowns.count,
-        times[times.len() / 2]
+        times[times.len() / 2],
+        processor[processor.len() / 2]
     ))
+}
+
+/// Processor time of all threads so far, as Linux counts it (nanoseconds); NaN elsewhere.
+fn processor_seconds() -> f64 {
+    let of = |task: std::io::Result<std::fs::DirEntry>| -> Option<f64> {
+        let text = std::fs::read_to_string(task.ok()?.path().join("schedstat")).ok()?;
+        text.split_whitespace().next()?.parse().ok()
+    };
+    std::fs::read_dir("/proc/self/task").map_or(f64::NAN, |tasks| tasks.filter_map(of).sum::<f64>() / 1e9)
 }
 
 /// Seconds after which a verdict is not taken again, and how often it is at most; the median counts.

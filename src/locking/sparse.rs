@@ -118,12 +118,11 @@ fn scale<const W: usize>(pattern: &Pattern, blocks: &mut [Block<W>]) -> Vec<[f64
     };
     let by: Vec<[f64; W]> = (0..pattern.place.len()).map(of).collect();
     for (column, s) in by.iter().enumerate() {
-        for at in pattern.start[column]..pattern.start[column + 1] {
-            let r = by[pattern.row[at]];
-            blocks[at]
-                .iter_mut()
-                .zip(r)
-                .for_each(|(line, r)| line.iter_mut().zip(s).for_each(|(v, s)| *v *= r * s));
+        let own = pattern.start[column]..pattern.start[column + 1];
+        for (block, &row) in blocks[own.clone()].iter_mut().zip(&pattern.row[own]) {
+            for (line, r) in block.iter_mut().zip(by[row]) {
+                line.iter_mut().zip(s).for_each(|(v, s)| *v *= r * s);
+            }
         }
     }
     pattern.place.iter().map(|&k| by[k]).collect()
@@ -142,8 +141,9 @@ fn gather<const W: usize>(
     }
     for &(k, first) in &p.left[column] {
         let by = transposed(&done[first]);
-        for block in first..p.start[k + 1] {
-            less_product(&mut own[at[p.row[block]]], &done[block], &by);
+        let rest = first..p.start[k + 1];
+        for (block, &row) in done[rest.clone()].iter().zip(&p.row[rest]) {
+            less_product(&mut own[at[row]], block, &by);
         }
     }
 }
@@ -197,9 +197,9 @@ impl Pivots {
 
 /// Solves L z = b, L the lower triangle.
 fn forward<const W: usize>(l: &Block<W>, mut b: [f64; W]) -> [f64; W] {
-    for r in 0..W {
-        let before: f64 = (0..r).map(|k| l[r][k] * b[k]).sum();
-        b[r] = (b[r] - before) / l[r][r];
+    for (r, line) in l.iter().enumerate() {
+        let before: f64 = (0..r).map(|k| line[k] * b[k]).sum();
+        b[r] = (b[r] - before) / line[r];
     }
     b
 }

@@ -133,9 +133,9 @@ impl<const W: usize> System<W> {
     fn gram(&self, pair: &Pair<W>, weights: &[f64]) -> Block<W> {
         let mut gram = zero::<W>();
         for (w, d) in self.wrenches[pair.rows.clone()].iter().zip(&weights[pair.rows.clone()]) {
-            for r in 0..W {
-                let by = w[r] * d;
-                (0..W).for_each(|c| gram[r][c] += by * w[c]);
+            for (line, v) in gram.iter_mut().zip(w) {
+                let by = v * d;
+                (0..W).for_each(|c| line[c] += by * w[c]);
             }
         }
         gram
