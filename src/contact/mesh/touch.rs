@@ -178,12 +178,15 @@ fn angle(m: DVec3, n: DVec3) -> f64 {
     m.cross(n).length().atan2(m.dot(n))
 }
 
+/// Unit normals, each with the angle (radians) to which it is known.
+type Normals = Vec<(DVec3, f64)>;
+
 /// The normals, from the first to the second, of the rows that hold at a place, and how well they are known.
-fn verdict(place: &Place) -> Result<Vec<(DVec3, f64)>, (Why, Vec<DVec3>)> {
+fn verdict(place: &Place) -> Result<Normals, (Why, Vec<DVec3>)> {
     let yields = |l: &Local| matches!(l.form, Form::Flat | Form::Reflex);
     let own = place.a.normals.iter().map(|&n| (n, place.a.known)).filter(|_| yields(place.a));
     let other = place.b.normals.iter().map(|&n| (-n, place.b.known)).filter(|_| yields(place.b));
-    let rows: Vec<(DVec3, f64)> = own.chain(other).collect();
+    let rows: Normals = own.chain(other).collect();
     if !rows.is_empty() {
         return Ok(rows);
     }
