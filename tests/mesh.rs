@@ -2,6 +2,8 @@
 //! may break, and files and overlaps that must be refused.
 
 mod files;
+mod fixed;
+mod kept;
 mod made;
 mod noisy;
 mod poly;

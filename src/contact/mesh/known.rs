@@ -23,14 +23,18 @@ pub struct Accuracy {
 /// Round-off of a unit normal that is summed from a few cross products and turned by a pose.
 const ROUND_OFF: f64 = 16.0 * f64::EPSILON;
 
-/// For each part the normals of its facets.
-pub(super) fn normals(assembly: &Assembly, accuracy: &[Accuracy], tolerance: f64) -> Vec<Vec<Direction>> {
+/// For each part the normals of its facets, and the largest angle (radians) by which one was turned.
+pub(super) fn normals(
+    assembly: &Assembly,
+    accuracy: &[Accuracy],
+    tolerance: f64,
+) -> (Vec<Vec<Direction>>, f64) {
     let faces: Vec<Faces> = assembly.solids.iter().map(Faces::of).collect();
     let (mut all, mut apart, mut first, mut of_all) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
     for p in assembly.ids() {
         let own = &faces[assembly.part(p).solid];
         let turn = accuracy.get(p.at()).map_or(0.0, |a| a.turn);
-        let off = corner_error(accuracy, p, tolerance);
+        let off = own.corner_error(accuracy, p, tolerance);
         let start = all.len();
         first.push(start);
         of_all.extend((0..own.normals.len()).map(|k| (p, k)));
@@ -40,12 +44,14 @@ pub(super) fn normals(assembly: &Assembly, accuracy: &[Accuracy], tolerance: f64
     let fits = |k: usize, d: Direction| {
         let (p, face) = of_all[k];
         let own = &faces[assembly.part(p).solid];
-        own.fits(face, d, assembly, p, corner_error(accuracy, p, tolerance))
+        let turn = accuracy.get(p.at()).map_or(0.0, |a| a.turn);
+        own.fits(face, d, assembly, p, [own.corner_error(accuracy, p, tolerance), turn])
     };
     let one = alike(&all, |k| &apart[k], fits);
     let of =
         |p: PartIx| faces[assembly.part(p).solid].of_facet.iter().map(|k| one[first[p.at()] + k]).collect();
-    assembly.ids().map(of).collect()
+    let turned = one.iter().zip(&all).map(|(d, e)| d.n.angle_between(e.n)).fold(0.0, f64::max);
+    (assembly.ids().map(of).collect(), turned)
 }
 
 /// The flat faces of a solid: facets with one normal that hang together.
@@ -58,53 +64,35 @@ struct Faces {
     rim_per_area: Vec<f64>,
     /// For each face those that share an edge with it.
     beside: Vec<Vec<usize>>,
+    /// Whether there are faces of four corners or more and all of them are plane to round-off.
+    exact: bool,
+    /// Of the coordinates, in model units.
+    round_off: f64,
 }
 
 impl Faces {
     fn of(solid: &Solid) -> Faces {
-        let beside = neighbors(solid);
-        let bits = |k: usize| solid.facets[k].normal.to_array().map(f64::to_bits);
-        let count = solid.facets.len();
-        let mut of_facet = vec![usize::MAX; count];
-        let mut normals = Vec::new();
-        for seed in 0..count {
-            if of_facet[seed] != usize::MAX {
-                continue;
-            }
-            let mut open = vec![seed];
-            of_facet[seed] = normals.len();
-            while let Some(k) = open.pop() {
-                for &(j, _) in &beside[k] {
-                    if of_facet[j] == usize::MAX && bits(j) == bits(k) {
-                        of_facet[j] = normals.len();
-                        open.push(j);
-                    }
-                }
-            }
-            normals.push(solid.facets[seed].normal);
-        }
-        let (mut rim, mut area) = (vec![0.0; normals.len()], vec![0.0; normals.len()]);
-        let mut other = vec![Vec::new(); normals.len()];
-        for k in 0..count {
-            let f = of_facet[k];
+        let across = neighbors(solid);
+        let of_facet = grown(solid, &across);
+        let count = of_facet.iter().max().map_or(0, |m| m + 1);
+        let (mut normals, mut corners) = (vec![DVec3::ZERO; count], vec![Vec::new(); count]);
+        let (mut rim, mut area, mut beside) = (vec![0.0; count], vec![0.0; count], vec![Vec::new(); count]);
+        for (k, &f) in of_facet.iter().enumerate() {
+            normals[f] = solid.facets[k].normal;
+            corners[f].extend(&solid.facets[k].corners);
             area[f] += facet_area(solid, k);
-            for &(j, length) in beside[k].iter().filter(|(j, _)| of_facet[*j] != f) {
+            for &(j, length) in across[k].iter().filter(|(j, _)| of_facet[*j] != f) {
                 rim[f] += length;
-                other[f].push(of_facet[j]);
+                beside[f].push(of_facet[j]);
             }
         }
-        other.iter_mut().for_each(|o| {
-            o.sort_unstable();
-            o.dedup();
-        });
-        let mut corners = vec![Vec::new(); normals.len()];
-        (0..count).for_each(|k| corners[of_facet[k]].extend(&solid.facets[k].corners));
-        corners.iter_mut().for_each(|c: &mut Vec<u32>| {
-            c.sort_unstable();
-            c.dedup();
-        });
+        corners.iter_mut().for_each(once);
+        beside.iter_mut().for_each(once);
         let rim_per_area = rim.iter().zip(&area).map(|(r, a)| r / a).collect();
-        Faces { of_facet, normals, corners, rim_per_area, beside: other }
+        let round_off =
+            f64::EPSILON * solid.vertices.iter().map(|p| p.abs().max_element()).fold(0.0, f64::max);
+        let exact = exact(solid, &normals, &corners, round_off);
+        Faces { of_facet, normals, corners, rim_per_area, beside, exact, round_off }
     }
 
     /// The face's normal in place. Its area vector is half the sum of p x (next - before) / 2 over the rim, so
@@ -116,20 +104,64 @@ impl Faces {
 
     /// Whether the face's corners lie in a plane with that normal as well as both are known. A long thin face may turn
     /// about its length only.
-    fn fits(&self, face: usize, d: Direction, asm: &Assembly, p: PartIx, off: f64) -> bool {
+    fn fits(&self, face: usize, d: Direction, asm: &Assembly, p: PartIx, [off, turn]: [f64; 2]) -> bool {
         let (solid, pose) = (asm.solid(p), asm.part(p).pose);
         let corners = self.corners[face].iter().map(|&i| pose.transform_vector3(solid.vertices[i as usize]));
         let corners: Vec<DVec3> = corners.collect();
         let middle = corners.iter().sum::<DVec3>() / corners.len() as f64;
-        let allowed = |r: DVec3| 2.0 * off + (d.known + ROUND_OFF) * r.length();
+        let allowed = |r: DVec3| 2.0 * off + (d.known + turn + ROUND_OFF) * r.length();
         corners.iter().map(|c| *c - middle).all(|r| r.dot(d.n).abs() <= allowed(r))
+    }
+
+    /// How far a corner may be off. Digits that no face contradicts are taken at their word: rounded corners do not
+    /// lie in one plane by fours. What is known worse than the tolerance is known to the tolerance: the user says
+    /// that much counts.
+    fn corner_error(&self, accuracy: &[Accuracy], p: PartIx, tolerance: f64) -> f64 {
+        let written = accuracy.get(p.at()).map_or(0.0, |a| a.corner);
+        let corner = if self.exact { written.min(self.round_off) } else { written };
+        (3f64.sqrt() * corner).min(tolerance)
     }
 }
 
-/// How far a corner may be off. What is known worse than the tolerance is known to the tolerance: the user says that
-/// much counts.
-fn corner_error(accuracy: &[Accuracy], p: PartIx, tolerance: f64) -> f64 {
-    3f64.sqrt() * accuracy.get(p.at()).map_or(0.0, |a| a.corner).min(tolerance)
+fn once<T: Ord>(list: &mut Vec<T>) {
+    list.sort_unstable();
+    list.dedup();
+}
+
+/// For each facet its face: over edges to facets with the same normal, to the last bit.
+fn grown(solid: &Solid, across: &[Vec<(usize, f64)>]) -> Vec<usize> {
+    let bits = |k: usize| solid.facets[k].normal.to_array().map(f64::to_bits);
+    let mut of_facet = vec![usize::MAX; solid.facets.len()];
+    let mut faces = 0;
+    for seed in 0..of_facet.len() {
+        if of_facet[seed] != usize::MAX {
+            continue;
+        }
+        let mut open = vec![seed];
+        of_facet[seed] = faces;
+        while let Some(k) = open.pop() {
+            for &(j, _) in &across[k] {
+                if of_facet[j] == usize::MAX && bits(j) == bits(k) {
+                    of_facet[j] = faces;
+                    open.push(j);
+                }
+            }
+        }
+        faces += 1;
+    }
+    of_facet
+}
+
+/// A plane through three corners misses the fourth by the round-off of either, and of a normal over the face's size.
+fn exact(solid: &Solid, normals: &[DVec3], corners: &[Vec<u32>], round_off: f64) -> bool {
+    let mut larger = normals.iter().zip(corners).filter(|(_, c)| c.len() > 3).peekable();
+    let plane = |(n, c): (&DVec3, &Vec<u32>)| {
+        let at = |i: &u32| solid.vertices[*i as usize];
+        let off = c.iter().map(|i| (at(i) - at(&c[0])).dot(*n).abs()).fold(0.0, f64::max);
+        let size = c.iter().map(|i| at(i).distance(at(&c[0]))).fold(0.0, f64::max);
+        off <= 8.0 * round_off + ROUND_OFF * size
+    };
+    larger.peek().is_some() && larger.all(plane)
 }
 
 fn facet_area(solid: &Solid, k: usize) -> f64 {

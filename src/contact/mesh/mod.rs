@@ -107,7 +107,7 @@ pub fn mesh_patches(
     tolerance: f64,
 ) -> Result<MeshContacts, ContactFaults> {
     let origin = middle(assembly);
-    let normals = known::normals(assembly, accuracy, tolerance);
+    let (normals, turned) = known::normals(assembly, accuracy, tolerance);
     let shapes: Vec<Shape> =
         assembly.ids().map(|p| Shape::new(assembly, p, origin, &normals[p.at()])).collect();
     let pairs = near_pairs(&shapes, tolerance);
@@ -129,7 +129,9 @@ pub fn mesh_patches(
         all.assumed.extend(c.assumed);
         all
     });
-    Ok(with_settled_normals(all, tolerance))
+    let mut all = with_settled_normals(all, tolerance);
+    all.settled.turn = all.settled.turn.max(turned);
+    Ok(all)
 }
 
 /// The contacts with normals made one that cannot be told apart, and corners moved into the planes of theirs.

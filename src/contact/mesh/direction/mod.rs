@@ -21,9 +21,8 @@ pub(super) struct Direction {
 /// What was assumed of an assembly's contact normals.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Assumption {
-    /// Distinct directions before and after.
-    pub before: usize,
-    pub after: usize,
+    /// Distinct directions that are left.
+    pub directions: usize,
     /// Sets of three directions or more that were put into one plane.
     pub planes: usize,
     /// The largest turn of a direction, in radians.
@@ -31,18 +30,21 @@ pub struct Assumption {
 }
 
 impl Assumption {
-    /// In words, where anything was assumed.
+    /// In words, where more than double precision's own round-off was assumed away.
     pub fn words(&self) -> Option<String> {
-        (self.turn > 0.0).then(|| {
+        (self.turn > ROUND_OFF).then(|| {
             format!(
-                "{} directions of contact normals were taken as {}, {} sets of them as lying in a plane: none was \
-                 turned by more than {:.1e} rad, which is what the files' digits leave open; a lean finer than \
+                "contact normals were taken as {} directions, {} sets of them each across one axis: what the files' \
+                 digits cannot tell apart was made one, and none was turned by more than {:.1e} rad; a lean finer than \
                  that is not seen",
-                self.before, self.after, self.planes, self.turn
+                self.directions, self.planes, self.turn
             )
         })
     }
 }
+
+/// Turns of normals that double precision explains: some ten operations on unit vectors, and poses.
+const ROUND_OFF: f64 = 1e-14;
 
 /// Directions of one plane put into it, after those that agree were made one.
 pub(super) fn settled(directions: &[Direction]) -> (Vec<Direction>, Assumption) {
@@ -62,10 +64,7 @@ pub(super) fn settled(directions: &[Direction]) -> (Vec<Direction>, Assumption) 
     let along = |k: usize| Direction { n: flat[at[k]].n * one[k].n.dot(flat[at[k]].n).signum(), ..one[k] };
     let out: Vec<Direction> = (0..one.len()).map(along).collect();
     let turn = out.iter().zip(directions).map(|(d, e)| d.n.angle_between(e.n)).fold(0.0, f64::max);
-    let mut before: Vec<[u64; 3]> = directions.iter().map(|d| bits(upward(d.n))).collect();
-    before.sort_unstable();
-    before.dedup();
-    (out, Assumption { before: before.len(), after: distinct.len(), planes, turn })
+    (out, Assumption { directions: distinct.len(), planes, turn })
 }
 
 /// Each direction replaced by the best known one that it cannot be told from, with its own sign; `apart` lists for each
@@ -153,7 +152,7 @@ mod tests {
         };
         let dirs = known(2e-7, &(0..9).map(spoke).chain([axis]).collect::<Vec<_>>());
         let (flat, said) = settled(&dirs);
-        assert_eq!((said.before, said.after, said.planes), (10, 10, 1));
+        assert_eq!((said.directions, said.planes), (10, 1));
         let across = flat[0].n.cross(flat[2].n).normalize();
         assert!(flat[..9].iter().all(|d| d.n.dot(across).abs() < 1e-15));
         assert!(said.turn < 4e-7 && flat[9].n == axis);

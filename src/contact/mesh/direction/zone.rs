@@ -80,6 +80,9 @@ fn zones(directions: &[Direction]) -> Vec<Zone> {
 fn projected(directions: &[Direction], zones: &[Zone]) -> Result<Vec<Direction>, usize> {
     let mut zones = zones.to_vec();
     let mut flat = directions.to_vec();
+    let turned = |flat: &[Direction], k: usize| {
+        flat[k].n.distance(directions[k].n) > 2.0 * directions[k].known + ROUND_OFF
+    };
     for _ in 0..ROUNDS {
         zones.iter_mut().for_each(|z| z.axis = fitted(z, &flat));
         for zone in &zones {
@@ -87,12 +90,12 @@ fn projected(directions: &[Direction], zones: &[Zone]) -> Result<Vec<Direction>,
                 flat[k].n = flat[k].n.reject_from_normalized(zone.axis).normalize();
             }
         }
-        if zones.iter().all(|z| left(z, &flat) <= ROUND_OFF) {
+        let too_far = |z: &Zone| z.members.iter().any(|&k| turned(&flat, k));
+        if zones.iter().all(|z| left(z, &flat) <= ROUND_OFF) || zones.iter().any(too_far) {
             break;
         }
     }
-    let turned = |k: usize| flat[k].n.distance(directions[k].n) > 2.0 * directions[k].known + ROUND_OFF;
-    let bad = |z: &Zone| left(z, &flat) > ROUND_OFF || z.members.iter().any(|&k| turned(k));
+    let bad = |z: &Zone| left(z, &flat) > ROUND_OFF || z.members.iter().any(|&k| turned(&flat, k));
     match zones.iter().rposition(bad) {
         Some(at) => Err(at),
         None => Ok(flat),
