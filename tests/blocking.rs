@@ -262,11 +262,14 @@ fn strongly_connected_everywhere_is_less_than_locked() {
     assert_eq!(check.translation.word(), "free");
 }
 
+/// Id, whether directed, the data of each node, and the arcs.
+type ReadGraph = (String, bool, Vec<Vec<String>>, Vec<[String; 2]>);
+
 /// Nodes and edges of every graph in a GraphML file, as another program would read it.
-fn read_graphml(bytes: &[u8]) -> Vec<(String, bool, Vec<Vec<String>>, Vec<[String; 2]>)> {
+fn read_graphml(bytes: &[u8]) -> Vec<ReadGraph> {
     let text = std::str::from_utf8(bytes).expect("UTF-8");
     let mut reader = quick_xml::Reader::from_str(text);
-    let mut out: Vec<(String, bool, Vec<Vec<String>>, Vec<[String; 2]>)> = Vec::new();
+    let mut out: Vec<ReadGraph> = Vec::new();
     loop {
         match reader.read_event().expect("well-formed XML") {
             Event::Start(e) | Event::Empty(e) => {
