@@ -60,7 +60,13 @@ impl Coupon {
         let fits = |n: &Notch| n.width_mm <= PITCH - 1.0 && (n.number as f64) <= room;
         let notches: Vec<Notch> = STEPS.iter().enumerate().map(notch).filter(fits).collect();
         let key = [(20.0, 20.0), (20.0 + KEY.1, 20.0), (20.0 + KEY.1, 20.0 + KEY.0), (20.0, 20.0 + KEY.0)];
-        Coupon { bar_mm: COUPON_MM, key_mm: KEY.0, gauge: prism(&outline(&notches)), key: prism(&key), notches }
+        Coupon {
+            bar_mm: COUPON_MM,
+            key_mm: KEY.0,
+            gauge: prism(&outline(&notches)),
+            key: prism(&key),
+            notches,
+        }
     }
 }
 
@@ -80,7 +86,8 @@ fn outline(notches: &[Notch]) -> Vec<(f64, f64)> {
 fn prism(outline: &[(f64, f64)]) -> Mesh {
     let n = outline.len() as u32;
     let point = |z: f64| move |&(x, y): &(f64, f64)| DVec3::new(f64::from(x as f32), f64::from(y as f32), z);
-    let vertices: Vec<DVec3> = outline.iter().map(point(0.0)).chain(outline.iter().map(point(THICK))).collect();
+    let vertices: Vec<DVec3> =
+        outline.iter().map(point(0.0)).chain(outline.iter().map(point(THICK))).collect();
     let facet = |corners: Vec<u32>, normal| Facet { corners, normal };
     let mut triangles = triangulate(&vertices, &facet((0..n).rev().collect(), DVec3::NEG_Z));
     triangles.extend(triangulate(&vertices, &facet((n..2 * n).collect(), DVec3::Z)));

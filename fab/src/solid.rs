@@ -89,6 +89,11 @@ impl Solid {
         self.0.decompose().into_iter().map(Solid).collect()
     }
 
+    /// The convex hull of points.
+    pub fn hull(points: &[DVec3]) -> Solid {
+        Solid(Manifold::hull(&points.iter().map(|p| Vec3::new(p.x, p.y, p.z)).collect::<Vec<_>>()))
+    }
+
     pub fn moved(&self, by: DVec3) -> Solid {
         Solid(self.0.translate(Vec3::new(by.x, by.y, by.z)))
     }

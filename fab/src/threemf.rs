@@ -67,7 +67,9 @@ pub fn write(model: &Model) -> io::Result<Vec<u8>> {
 }
 
 fn xml(model: &Model) -> String {
-    let mut x = format!("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<model unit=\"millimeter\" xml:lang=\"en-US\" xmlns=\"{CORE}\">\n");
+    let mut x = format!(
+        "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<model unit=\"millimeter\" xml:lang=\"en-US\" xmlns=\"{CORE}\">\n"
+    );
     let application = format!("weavelock {}", env!("CARGO_PKG_VERSION"));
     for (name, value) in
         [("Title", &model.title), ("Description", &model.description), ("Application", &application)]
@@ -90,7 +92,8 @@ fn clean(text: &str) -> String {
 }
 
 fn mesh(x: &mut String, id: usize, object: &Object) {
-    let _ = writeln!(x, "<object id=\"{id}\" type=\"model\" name=\"{}\"><mesh><vertices>", clean(&object.name));
+    let _ =
+        writeln!(x, "<object id=\"{id}\" type=\"model\" name=\"{}\"><mesh><vertices>", clean(&object.name));
     for v in &object.mesh.vertices {
         let [a, b, c] = v.as_vec3().to_array();
         let _ = writeln!(x, "<vertex x=\"{a}\" y=\"{b}\" z=\"{c}\"/>");
@@ -117,11 +120,19 @@ fn build(x: &mut String, model: &Model) {
         }
         Build::Whole(at) => {
             let whole = model.objects.len() + 1;
-            let _ = writeln!(x, "<object id=\"{whole}\" type=\"model\" name=\"{}\"><components>", clean(&model.title));
+            let _ = writeln!(
+                x,
+                "<object id=\"{whole}\" type=\"model\" name=\"{}\"><components>",
+                clean(&model.title)
+            );
             for k in 1..whole {
                 let _ = writeln!(x, "<component objectid=\"{k}\"/>");
             }
-            let _ = writeln!(x, "</components></object>\n</resources>\n<build>\n<item objectid=\"{whole}\" transform=\"{}\"/>", shift(at));
+            let _ = writeln!(
+                x,
+                "</components></object>\n</resources>\n<build>\n<item objectid=\"{whole}\" transform=\"{}\"/>",
+                shift(at)
+            );
         }
     }
     *x += "</build>\n";

@@ -61,11 +61,16 @@ fn thinnest(mesh: &Mesh, tree: &Bvh, least: f64) -> Option<Thin> {
             continue;
         }
         match (tree.nodes[i], tree.nodes[j]) {
-            (Node::Branch { left, right }, _) if i == j => todo.extend([(left, left), (left, right), (right, right)]),
+            (Node::Branch { left, right }, _) if i == j => {
+                todo.extend([(left, left), (left, right), (right, right)])
+            }
             (Node::Branch { left, right }, _) => todo.extend([(left, j), (right, j)]),
             (_, Node::Branch { left, right }) => todo.extend([(i, left), (i, right)]),
             (Node::Leaf { first, count }, Node::Leaf { first: f, count: c }) => {
-                let pairs = tree.leaf(first, count).iter().flat_map(|&s| tree.leaf(f, c).iter().map(move |&t| (s, t)));
+                let pairs = tree
+                    .leaf(first, count)
+                    .iter()
+                    .flat_map(|&s| tree.leaf(f, c).iter().map(move |&t| (s, t)));
                 for (s, t) in pairs.filter(|&(s, t)| s != t) {
                     if normals[s as usize].dot(normals[t as usize]) < opposed {
                         let limit = best.map_or(least, |b| b.thickness_mm);

@@ -44,7 +44,8 @@ struct FabAnswer<'a> {
 /// The parts alone, without a package around them.
 pub fn made(placed: &Placed, out: &Path) -> Result<Report, Trouble> {
     let recipe = recipe(placed, &Wish::default(), Checkers::None)?;
-    make::make(&fabricate::job(&placed.joined), &recipe, out).map_err(|e| Trouble::Word(format!("error: {e}")))
+    make::make(&fabricate::job(&placed.joined), &recipe, out)
+        .map_err(|e| Trouble::Word(format!("error: {e}")))
 }
 
 /// What the command line asks for beyond the spec.
@@ -72,14 +73,18 @@ pub fn recipe(placed: &Placed, wish: &Wish, checkers: Checkers) -> Result<Recipe
     let mut find = |name: &str| Process::find(name).map_err(|e| faults.push(e.to_string())).ok();
     let main = find(&main);
     let parts: BTreeMap<String, Option<Process>> = names.into_iter().map(|(id, n)| (id, find(&n))).collect();
-    let (Some(main), true) = (main, parts.values().all(Option::is_some)) else { return Err(all_faults(faults)) };
+    let (Some(main), true) = (main, parts.values().all(Option::is_some)) else {
+        return Err(all_faults(faults));
+    };
     let parts: BTreeMap<String, Process> = parts.into_iter().filter_map(|(id, p)| Some((id, p?))).collect();
     let used: Vec<&Process> = std::iter::once(&main).chain(parts.values()).collect();
     faults.extend(steps_of_none(&own, &used));
     let mut with = |p: &Process| p.with(&for_its_steps(&own, p)).map_err(|e| faults.push(e.to_string())).ok();
     let main = with(&main);
     let parts = parts.iter().map(|(id, p)| Some((id.clone(), with(p)?))).collect::<Option<BTreeMap<_, _>>>();
-    let (Some(process), Some(parts), true) = (main, parts, faults.is_empty()) else { return Err(all_faults(faults)) };
+    let (Some(process), Some(parts), true) = (main, parts, faults.is_empty()) else {
+        return Err(all_faults(faults));
+    };
     let programs = (checkers == Checkers::Installed).then(Programs::default);
     Ok(Recipe { programs, parts, ..Recipe::new(process) })
 }

@@ -99,7 +99,8 @@ struct ProcessesAnswer {
 pub fn processes(name: Option<&str>) -> Result<Told, Trouble> {
     let wrong = |e: process::ProcessError| Trouble::Word(format!("error: {e}"));
     let names: Vec<&str> = name.map_or_else(|| process::names().collect(), |n| vec![n]);
-    let all: Vec<Process> = names.iter().map(|n| Process::find(n).map_err(wrong)).collect::<Result<_, _>>()?;
+    let all: Vec<Process> =
+        names.iter().map(|n| Process::find(n).map_err(wrong)).collect::<Result<_, _>>()?;
     let answer = ProcessesAnswer { verb: "processes", processes: all.clone(), beds: process::beds() };
     if let Some(text) = name.and_then(process::source) {
         let chapter = Chapter { figure: text.lines().map(String::from).collect(), ..Chapter::default() };
@@ -107,14 +108,23 @@ pub fn processes(name: Option<&str>) -> Result<Told, Trouble> {
     }
     let row = |p: &Process| {
         let steps = p.steps.iter().map(|s| s.name.as_str()).collect::<Vec<_>>().join(", ");
-        vec![p.name.clone(), p.title.clone(), p.clearance.value.to_string(), p.least_wall.value.to_string(), steps]
+        vec![
+            p.name.clone(),
+            p.title.clone(),
+            p.clearance.value.to_string(),
+            p.least_wall.value.to_string(),
+            steps,
+        ]
     };
     let head = ["name", "", "air mm", "wall mm", "steps"].map(Column::words).to_vec();
     let rows = all.iter().map(row).collect();
-    let caption = "Copy one with: weavelock processes NAME > my.toml; then: weavelock fab FILE --process my.toml".into();
+    let caption =
+        "Copy one with: weavelock processes NAME > my.toml; then: weavelock fab FILE --process my.toml"
+            .into();
     let headline = format!("{} processes come along.", all.len());
     let beds = process::beds().iter().map(|b| b.name.clone()).collect::<Vec<_>>().join(", ");
     let facts = vec![("beds".to_string(), beds)];
-    let chapter = Chapter { headline, facts, tables: vec![Table { caption, head, rows }], ..Chapter::default() };
+    let chapter =
+        Chapter { headline, facts, tables: vec![Table { caption, head, rows }], ..Chapter::default() };
     Ok(Told::new(News::Good, &answer, "Processes", "Processes", chapter))
 }

@@ -51,7 +51,8 @@ pub fn speeds(rows: &[Row], unknowns: &Unknowns) -> Vec<f64> {
             if unknowns.column[part.at()].is_none() {
                 return DVec3::ZERO;
             }
-            let arm = (row.point - unknowns.centre[part.at()]).abs() * (turns(unknowns) / unknowns.lever);
+            let arm = (row.point - unknowns.centre[part.at()]).abs()
+                * (turns(unknowns) / unknowns.lever[part.at()]);
             DVec3::new(1.0 + arm.y + arm.z, 1.0 + arm.z + arm.x, 1.0 + arm.x + arm.y)
         };
         (side(row.a) + side(row.b)).length() * (1.0 + 16.0 * UNIT)
@@ -61,9 +62,10 @@ pub fn speeds(rows: &[Row], unknowns: &Unknowns) -> Vec<f64> {
 
 /// Bounds of the relative rate of turning at each row over the unit box, radians for each unit of translation.
 pub fn turnings(rows: &[Row], unknowns: &Unknowns) -> Vec<f64> {
-    let side = |part: PartIx| f64::from(u8::from(unknowns.column[part.at()].is_some()));
+    let side =
+        |part: PartIx| f64::from(u8::from(unknowns.column[part.at()].is_some())) / unknowns.lever[part.at()];
     let root_3 = 3.0_f64.sqrt() * (1.0 + 4.0 * UNIT);
-    let one = |row: &Row| (side(row.a) + side(row.b)) * root_3 * turns(unknowns) / unknowns.lever;
+    let one = |row: &Row| (side(row.a) + side(row.b)) * root_3 * turns(unknowns);
     rows.iter().map(one).collect()
 }
 
@@ -127,7 +129,7 @@ fn velocity(row: &Row, unknowns: &Unknowns, x: &[f64]) -> DVec3 {
         let Some(c) = unknowns.column[part.at()] else { return DVec3::ZERO };
         let turn = match unknowns.freedom {
             Freedom::Translation => DVec3::ZERO,
-            Freedom::Rigid => DVec3::from_slice(&x[c + 3..]) / unknowns.lever,
+            Freedom::Rigid => DVec3::from_slice(&x[c + 3..]) / unknowns.lever[part.at()],
         };
         DVec3::from_slice(&x[c..]) + turn.cross(row.point - unknowns.centre[part.at()])
     };
@@ -283,7 +285,7 @@ mod tests {
             freedom: Freedom::Translation,
             column: vec![None, Some(0)],
             centre: vec![DVec3::ZERO; 2],
-            lever: 1.0,
+            lever: vec![1.0; 2],
             count: 3,
         };
         (rows, unknowns)

@@ -44,7 +44,8 @@ pub enum Beyond {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Standing {
     pub margin: Option<Margin>,
-    /// Solids read from meshes are as given: nothing is sampled, and their verdicts hold.
+    /// Solids read from meshes are as given and nothing is sampled; but their normals are known to their files'
+    /// digits only, and a lock holds where it survives that.
     pub beyond_sampling: Beyond,
     pub beyond_why: String,
 }
@@ -81,7 +82,10 @@ pub fn standing(joined: &Joined, check: &Check) -> Sampling {
     }
     let still: Vec<PartIx> = check.held.iter().copied().chain(check.fixed).collect();
     let ground = Ground::new(joined, still);
-    let largest = chord::largest(&ground.errors);
+    let largest = match joined.origin {
+        Origin::Woven(_) => chord::largest(&ground.errors),
+        Origin::Meshes => EXACT,
+    };
     Sampling {
         rigid: ground.standing(Freedom::Rigid, &check.rigid),
         translation_standing: ground.standing(Freedom::Translation, &check.translation),
@@ -104,7 +108,7 @@ impl Ground<'_> {
     fn new(joined: &Joined, still: Vec<PartIx>) -> Ground<'_> {
         let errors = match &joined.origin {
             Origin::Woven(woven) => chord::errors(woven, &joined.patches),
-            Origin::Meshes => vec![EXACT; joined.patches.len()],
+            Origin::Meshes => joined.known.iter().map(|&angle| ChordError { angle, distance: 0.0 }).collect(),
         };
         Ground { joined, still, errors }
     }
@@ -154,11 +158,14 @@ impl Ground<'_> {
         speeds: &[f64],
         margin: &Margin,
     ) -> (Beyond, String) {
-        let Origin::Woven(woven) = &self.joined.origin else { return as_given() };
         let most = chord::largest(&of.errors);
         if of.unknowns.count == 0 || most.angle == 0.0 {
             return (Beyond::Holds, "the facets are parts of the true surfaces".into());
         }
+        let what = match self.joined.origin {
+            Origin::Woven(_) => "the facets' errors",
+            Origin::Meshes => "what the files' digits leave open",
+        };
         // Turning by an angle moves a unit normal by less; a point elsewhere moves with the rate of turning.
         let turnings = margin::turnings(&of.rows, &of.unknowns);
         let change = of.errors.iter().zip(speeds).zip(&turnings);
@@ -167,11 +174,15 @@ impl Ground<'_> {
         let survives = change.iter().all(|c| c.is_finite())
             && margin::lock(&of.weighted(change), stress, 0).is_some_and(|b| b.lower > 1.0);
         if survives {
-            return (
-                Beyond::Holds,
-                "the lock survives every change of the contacts within the facets' errors".into(),
-            );
+            return (Beyond::Holds, format!("the lock survives every change of the contacts within {what}"));
         }
+        let Origin::Woven(woven) = &self.joined.origin else {
+            let why = format!(
+                "normals are known to {:.1e} rad at worst, and the lock is not shown to survive that",
+                most.angle
+            );
+            return (Beyond::Unproven, why);
+        };
         let on_curves = chord::true_contacts(woven, &self.joined.patches);
         if self.locks(&on_curves, of.unknowns.freedom) {
             let n = on_curves.len();

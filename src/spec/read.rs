@@ -199,7 +199,8 @@ fn fab<'t>(reader: &mut Reader<'t>, field: &Field<'t>, width: Option<f64>) -> Op
         Some(field) => Some(reader.text(&field, "a bed's name, or \"250 x 210 x 220 mm\"")?.to_string()),
         None => None,
     };
-    let [elephant_foot_mm, flatten_mm] = ["elephant_foot", "flatten"].map(|key| shaving(reader, &fields, key));
+    let [elephant_foot_mm, flatten_mm] =
+        ["elephant_foot", "flatten"].map(|key| shaving(reader, &fields, key));
     Some(FabSpec {
         process: process?,
         clearance_mm,
@@ -217,7 +218,9 @@ const MAX_SHAVING_MM: f64 = 2.0;
 /// `Some(None)` where it is not asked for.
 fn shaving<'t>(reader: &mut Reader<'t>, fields: &Fields<'t>, key: &str) -> Option<Option<f64>> {
     match reader.get(fields, key) {
-        Some(field) => reader.length(&field, 0.0..=MAX_SHAVING_MM, "it is taken off the print face").map(Some),
+        Some(field) => {
+            reader.length(&field, 0.0..=MAX_SHAVING_MM, "it is taken off the print face").map(Some)
+        }
         None => Some(None),
     }
 }

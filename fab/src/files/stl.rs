@@ -24,11 +24,32 @@ pub fn snapped(mesh: &Mesh) -> Mesh {
 /// The solid as STL can hold it and closed: detail that f32 can not hold apart is united, beginning at `FINEST` snaps and
 /// doubling until the file closes; and the size of that detail in mm. `None` where `COARSEST` does not do.
 pub fn settled(solid: &Solid) -> Option<(Mesh, f64)> {
-    let (lo, hi) = solid.mesh().bounds();
-    let snap = snap_distance(lo.abs().max(hi.abs()).max_element());
-    let sizes = std::iter::successors(Some(FINEST * snap), |s| Some(s * 2.0)).take_while(|s| *s <= COARSEST);
-    let mut tries = sizes.map(|size| (snapped(&solid.plain(size).mesh()), size));
+    let mut tries =
+        details(&solid.mesh()).map(|size| (mended(snapped(&solid.plain(size).mesh()), size), size));
     tries.find(|(mesh, _)| mesh.closure() == Closure::Closed)
+}
+
+/// Sizes of detail to do without, in mm: from `FINEST` snaps of the mesh, doubling up to `COARSEST`.
+pub fn details(mesh: &Mesh) -> impl Iterator<Item = f64> + use<> {
+    let (lo, hi) = mesh.bounds();
+    let snap = snap_distance(lo.abs().max(hi.abs()).max_element());
+    std::iter::successors(Some(FINEST * snap), |s| Some(s * 2.0)).take_while(|s| *s <= COARSEST)
+}
+
+/// The mesh with both ends of each edge united that is shorter than `size` and not between two opposite triangles.
+fn mended(mesh: Mesh, size: f64) -> Mesh {
+    let short: Vec<(u32, u32)> = mesh
+        .loose_edges()
+        .into_iter()
+        .filter(|&(a, b)| mesh.vertices[a as usize].distance(mesh.vertices[b as usize]) < size)
+        .collect();
+    if short.is_empty() {
+        return mesh;
+    }
+    let mut vertices = mesh.vertices;
+    short.iter().for_each(|&(a, b)| vertices[b as usize] = vertices[a as usize]);
+    let points = vertices.iter().map(|v| v.to_array().map(|x| x as f32 + 0.0)).collect();
+    united(points, mesh.triangles.into_iter())
 }
 
 /// Two corners this many snaps apart stay apart when each moves by one.

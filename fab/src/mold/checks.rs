@@ -10,7 +10,7 @@ use crate::mold::ray;
 use crate::mold::rigid::{KEY_TIP, Tools};
 use crate::mold::shadow::{self, Side};
 use crate::mold::tops::Top;
-use crate::mold::{Measured, Mold};
+use crate::mold::{Measured, Mold, silicone};
 use crate::solid::{NotSolid, Solid, cuboid};
 use glam::{DVec2, DVec3};
 
@@ -33,6 +33,17 @@ pub fn rigid(mold: &Mold, h: &Halves) -> Result<Vec<Measured>, NotSolid> {
     let mut all = volumes(mold, h, &tools)?;
     all.extend(sweeps(mold, h));
     all.extend(channels(mold, h));
+    all.push(one_way(&mold.plan, &mold.figures));
+    Ok(all)
+}
+
+/// A silicone mold, by the board as read back: what both pours around it leave of the part.
+pub fn silicone(mold: &Mold, board: &Mesh) -> Result<Vec<Measured>, NotSolid> {
+    let [lower, upper] = silicone::pours(&Solid::of(board)?, &mold.plan, &mold.figures)?;
+    let (lower, upper) = (lower.mesh(), upper.mesh());
+    let h = Halves { lower: &lower, upper: &upper };
+    let mut all = volumes(mold, &h, &Tools::of(&mold.plan, &mold.figures)?)?;
+    all.extend(channels(mold, &h));
     all.push(one_way(&mold.plan, &mold.figures));
     Ok(all)
 }

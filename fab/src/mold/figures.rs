@@ -61,6 +61,15 @@ figures! {
     metal_extra: "%", 0.0, 100.0;
     wax_density: "g/cm3", 0.5, 2.0;
     silicone_density: "g/cm3", 0.8, 3.0;
+    /// Wax melts out.
+    dewax: "C", 60.0, 400.0;
+    dewax_time: "h", 0.1, 48.0;
+    /// Residue burns off.
+    burnout: "C", 300.0, 1100.0;
+    burnout_time: "h", 0.1, 72.0;
+    /// Of the flask when metal is poured.
+    flask_heat: "C", 20.0, 900.0;
+    metal_heat: "C", 200.0, 1800.0;
 }
 
 const EMBEDDED: &str = include_str!("../../processes/mold.toml");

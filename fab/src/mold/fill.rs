@@ -3,20 +3,30 @@
 //! After it the part is one stretch on every upright line, to round-off: then two halves leave it. Meant for undercuts
 //! that nobody sees; whoever calls decides how much may be filled.
 
+use crate::bvh::Bvh;
 use crate::mesh::Mesh;
-use crate::mold::shadow::{Blocked, Overlap};
+use crate::mold::ray;
+use crate::mold::shadow::{self, Blocked, Overlap};
 use crate::solid::{NotSolid, Solid};
 use glam::{DVec2, DVec3};
 
-/// How far a fill reaches into the part at both its ends, in snaps: so that it is one body with it.
-const OVER_IN_SNAPS: f64 = 4.0;
+/// Columns go on into the matter at their ends by this share of it, at most `DEEPEST` mm, so that they meet the part in
+/// volume and not in faces; at a sharp rim there is none, and they end on it.
+const INTO: f64 = 0.25;
+const DEEPEST: f64 = 0.5;
+
+/// How far a column that ends on the part at `at` goes on into it along z.
+pub fn into(part: (&Mesh, &Bvh), at: DVec3, way: f64) -> f64 {
+    way * (INTO * ray::matter(part, at, way)).min(DEEPEST)
+}
 
 /// The part with its undercuts filled, and the volume that came to it, mm3.
-pub fn fill(part: &Solid, mesh: &Mesh, blocked: &Blocked, snap: f64) -> Result<(Solid, f64), NotSolid> {
+pub fn fill(part: &Solid, mesh: &Mesh, blocked: &Blocked) -> Result<(Solid, f64), NotSolid> {
+    let tree = Bvh::new(mesh);
     let columns: Vec<Solid> = blocked
         .overlaps
         .iter()
-        .filter_map(|o| column(mesh, o, OVER_IN_SNAPS * snap).transpose())
+        .filter_map(|o| column((mesh, &tree), o).transpose())
         .collect::<Result<_, _>>()?;
     let filled = part.with(&Solid::all(columns));
     let grown = filled.volume() - part.volume();
@@ -24,10 +34,11 @@ pub fn fill(part: &Solid, mesh: &Mesh, blocked: &Blocked, snap: f64) -> Result<(
 }
 
 /// The air between the two facets over the outline that they share.
-fn column(mesh: &Mesh, o: &Overlap, over: f64) -> Result<Option<Solid>, NotSolid> {
-    let height = |t: u32, p: DVec2| super::shadow::height(&mesh.corners(t as usize), p);
-    let foot = o.outline.iter().map(|&p| p.extend(height(o.lower, p) - over));
-    let top = o.outline.iter().map(|&p| p.extend(height(o.upper, p).max(height(o.lower, p)) + over));
+fn column(part: (&Mesh, &Bvh), o: &Overlap) -> Result<Option<Solid>, NotSolid> {
+    let height = |t: u32, p: DVec2| shadow::height(&part.0.corners(t as usize), p);
+    let end = |p: DVec2, z: f64, way: f64| p.extend(z + into(part, p.extend(z), way));
+    let foot = o.outline.iter().map(|&p| end(p, height(o.lower, p), -1.0));
+    let top = o.outline.iter().map(|&p| end(p, height(o.upper, p).max(height(o.lower, p)), 1.0));
     let body = prism(foot.collect(), top.collect());
     if body.volume() <= 0.0 { Ok(None) } else { Solid::of(&body).map(Some) }
 }

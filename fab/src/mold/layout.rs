@@ -30,39 +30,62 @@ pub fn rim(f: &Figures) -> f64 {
     f.wall.value.max(f.key_diameter.value + 2.0 * EDGE)
 }
 
+/// What stands around a cavity, mm.
+#[derive(Clone, Copy, Debug)]
+pub struct Around {
+    /// Beside it, wide enough for keys.
+    pub rim: f64,
+    /// Above and below it.
+    pub wall: f64,
+    /// Whether there are screws and slots.
+    pub screwed: bool,
+}
+
+impl Around {
+    pub fn printed(f: &Figures) -> Around {
+        Around { rim: rim(f), wall: f.wall.value, screwed: true }
+    }
+
+    pub fn silicone(f: &Figures) -> Around {
+        let wall = f.silicone_wall.value;
+        Around { rim: wall.max(rim(f)), wall, screwed: false }
+    }
+}
+
+/// Least side of a block: a key between two screws, and slots beside it.
+pub fn least_side(f: &Figures) -> f64 {
+    f.key_diameter.value + f.bolt.value + 4.0 * EDGE + 2.0 * SLOT.x
+}
+
 /// The block around the part.
-pub fn block(part: &Mesh, f: &Figures) -> (DVec3, DVec3) {
+fn block(part: &Mesh, f: &Figures, a: Around) -> (DVec3, DVec3) {
     let (lo, hi) = part.bounds();
-    let around = DVec3::new(rim(f), rim(f), f.wall.value);
+    let around = DVec3::new(a.rim, a.rim, a.wall);
     let (lo, hi) = (lo - around, hi + around);
-    let least = f.key_diameter.value + f.bolt.value + 4.0 * EDGE + 2.0 * SLOT.x;
+    let least = least_side(f);
     let wider = ((DVec3::new(least, least, 0.0) - (hi - lo)) / 2.0).max(DVec3::ZERO);
     (lo - wider, hi + wider)
 }
 
-pub fn plan(part: &Mesh, parting: f64, tops: &[Top], f: &Figures) -> Plan {
-    let (mut low, mut high) = block(part, f);
+pub fn plan(part: &Mesh, parting: f64, tops: &[Top], f: &Figures, a: Around) -> Plan {
+    let (mut low, mut high) = block(part, f, a);
     // A key needs its height and a floor on both sides of the parting.
     let room = f.key_height.value + f.key_clearance.value + EDGE;
     low.z = low.z.min(parting - room);
     high.z = high.z.max(parting + room);
-    let (inset, middle) = (rim(f) / 2.0, (low + high) / 2.0);
+    let (inset, middle) = (a.rim / 2.0, (low + high) / 2.0);
     let key = |x: f64, y: f64| Key { at: DVec3::new(x, y, parting) };
     let screw = f.bolt.value / 2.0 + EDGE;
-    let corner = |x: f64, y: f64| DVec2::new(x, y);
+    let (left, right, front, rear) = (low.x + screw, high.x - screw, low.y + screw, high.y - screw);
+    let corners = [(left, front), (right, front), (right, rear), (left, rear)].map(DVec2::from);
     let (sprues, vents) = channels(part, tops, high.z, f);
     Plan {
         low,
         high,
         parting,
         keys: vec![key(low.x + inset, middle.y), key(high.x - inset, middle.y), key(middle.x, low.y + inset)],
-        bolts: vec![
-            corner(low.x + screw, low.y + screw),
-            corner(high.x - screw, low.y + screw),
-            corner(high.x - screw, high.y - screw),
-            corner(low.x + screw, high.y - screw),
-        ],
-        slots: slots(low, high, parting, f),
+        bolts: if a.screwed { corners.to_vec() } else { vec![] },
+        slots: if a.screwed { slots(low, high, parting, f) } else { vec![] },
         sprues,
         vents,
     }

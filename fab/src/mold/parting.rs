@@ -4,8 +4,9 @@
 //! A plane at height c is exact: below c no facet looks up and above c none looks down, so that on every upright line
 //! the part is one stretch through c. The steps are upright walls under (or over) the silhouette: they have no draft.
 
+use crate::bvh::Bvh;
 use crate::mesh::{Mesh, area};
-use crate::mold::fill::prism;
+use crate::mold::fill::{into, prism};
 use crate::solid::{NotSolid, Solid, cuboid};
 use glam::DVec3;
 
@@ -84,35 +85,56 @@ fn wrong(part: &Mesh, looks: &[Look], height: f64) -> f64 {
 /// Everything of `block` below the parting surface: up to the plane, where the part is above it up to the part's
 /// underside, and where the part is below it only down to the part's top. On every upright line it ends once, so the
 /// halves part along z. Exact for a part that is one stretch on every upright line.
-pub fn below(block: (DVec3, DVec3), cavity: &Solid, plane: &Plane, snap: f64) -> Result<Solid, NotSolid> {
+///
+/// `fat`: how much wider the steps are on each side, mm. 0 for the mold itself; a little for a file that is read by
+/// itself, where steps that meet in an edge must not.
+pub fn below(
+    block: (DVec3, DVec3),
+    cavity: &Solid,
+    plane: &Plane,
+    snap: f64,
+    fat: f64,
+) -> Result<Solid, NotSolid> {
     let (lo, hi) = block;
     let half = Solid::of(&cuboid(lo, hi.with_z(plane.height)))?;
     if plane.wrong == 0.0 {
         return Ok(half);
     }
     let other = Solid::of(&cuboid(lo.with_z(plane.height), hi))?;
-    let raised = wrong_side(&cavity.common(&other), Look::Down, plane.height, snap)?;
-    let lowered = wrong_side(&cavity.common(&half), Look::Up, plane.height, snap)?;
+    let mesh = cavity.mesh();
+    let part = (&mesh, &Bvh::new(&mesh));
+    let wrong = |cut: &Solid, way: Look| -> Result<Solid, NotSolid> {
+        let columns = wrong_side(part, cut, way, plane.height, snap);
+        let solid = |c: &Mesh| if fat > 0.0 { Ok(fattened(c, fat)) } else { Solid::of(c) };
+        Ok(Solid::all(columns.iter().map(solid).collect::<Result<_, _>>()?))
+    };
+    let raised = wrong(&cavity.common(&other), Look::Down)?;
+    let lowered = wrong(&cavity.common(&half), Look::Up)?;
     Ok(half.minus(&lowered).with(&raised))
 }
 
-/// Columns between the plane and the facets that look the wrong way there.
-fn wrong_side(cut: &Solid, way: Look, height: f64, snap: f64) -> Result<Solid, NotSolid> {
+/// Columns between the plane and the facets that look the wrong way there, and on into the part.
+fn wrong_side(part: (&Mesh, &Bvh), cut: &Solid, way: Look, height: f64, snap: f64) -> Vec<Mesh> {
     let mesh = cut.mesh();
     let off_plane = |t: usize| mesh.corners(t).iter().any(|c| (c.z - height).abs() > WALL_IN_SNAPS * snap);
     let wrong = (0..mesh.triangles.len()).filter(|&t| look(&mesh, t, snap) == way && off_plane(t));
-    let columns = wrong.map(|t| Solid::of(&column(mesh.corners(t), height))).collect::<Result<_, _>>()?;
-    Ok(Solid::all(columns))
+    wrong.map(|t| column(part, mesh.corners(t), height)).collect()
 }
 
-fn column(c: [DVec3; 3], height: f64) -> Mesh {
+fn fattened(column: &Mesh, fat: f64) -> Solid {
+    let around = [DVec3::new(fat, fat, 0.0), DVec3::new(-fat, fat, 0.0)];
+    let corners = column.vertices.iter().flat_map(|v| around.into_iter().flat_map(|a| [*v + a, *v - a]));
+    Solid::hull(&corners.collect::<Vec<_>>())
+}
+
+fn column(part: (&Mesh, &Bvh), c: [DVec3; 3], height: f64) -> Mesh {
     let onto = |c: [DVec3; 3]| c.map(|v| v.with_z(height)).to_vec();
+    let inner = |c: [DVec3; 3], way: f64| c.map(|v| v + DVec3::Z * into(part, v, way)).to_vec();
     if (c[1] - c[0]).cross(c[2] - c[0]).z > 0.0 {
-        prism(c.to_vec(), onto(c))
-    } else {
-        let c = [c[0], c[2], c[1]];
-        prism(onto(c), c.to_vec())
+        return prism(inner(c, -1.0), onto(c));
     }
+    let c = [c[0], c[2], c[1]];
+    prism(onto(c), inner(c, 1.0))
 }
 
 #[cfg(test)]

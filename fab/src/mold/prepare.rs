@@ -1,7 +1,9 @@
 //! Takes a part and an order; gives the part in its mold frame with its pull, parting and high points, or why there can
 //! be no mold of it.
 
+use crate::bvh::Bvh;
 use crate::cross;
+use crate::files::stl;
 use crate::mesh::{Closure, Mesh};
 use crate::mold::frame::{Framed, framed};
 use crate::mold::parting::{self, Plane};
@@ -20,6 +22,8 @@ pub struct Ready {
     pub solid: Solid,
     pub plane: Plane,
     pub tops: Vec<Top>,
+    /// What was mended in the mesh that came.
+    pub mended: Option<String>,
 }
 
 pub fn unfit(what: impl Into<String>, hint: &str) -> MoldError {
@@ -35,10 +39,22 @@ impl From<NotSolid> for MoldError {
 /// The largest part whose self-crossings are looked for, triangles: beyond it the kernel's answer alone is taken.
 const CROSSINGS_UP_TO: usize = 200_000;
 
-/// Refuses what is no plain solid.
-pub fn checked(part: &Mesh) -> Result<Solid, MoldError> {
+/// A part that is a plain solid, and what was mended for it.
+pub struct Checked {
+    pub mesh: Mesh,
+    pub mended: Option<String>,
+}
+
+/// Refuses what is no plain solid of one body.
+pub fn checked(part: &Mesh) -> Result<Checked, MoldError> {
     if part.triangles.is_empty() {
         return Err(unfit("the part has no triangles", "give a closed mesh"));
+    }
+    if part.triangles.iter().flatten().any(|&v| v as usize >= part.vertices.len()) {
+        return Err(unfit(
+            "a triangle of the part names a corner that is not there",
+            "export the mesh again",
+        ));
     }
     if part.vertices.iter().any(|v| !v.is_finite()) {
         return Err(unfit("a corner of the part is not a finite number", "export the mesh again"));
@@ -53,36 +69,55 @@ pub fn checked(part: &Mesh) -> Result<Solid, MoldError> {
         return Err(unfit(format!("the part's volume is {volume:.3} mm3"), "turn its facets outward"));
     }
     let solid = Solid::of(part)?;
-    if part.triangles.len() <= CROSSINGS_UP_TO {
-        let tree = crate::bvh::Bvh::new(part);
-        if let Some(c) = cross::within(part, &tree).first() {
-            return Err(unfit(
-                format!("the part's surface crosses itself at {:.3}", c.at),
-                "unite its bodies first",
-            ));
+    one_body(&solid)?;
+    uncrossed(part, &solid)
+}
+
+fn one_body(solid: &Solid) -> Result<(), MoldError> {
+    let bodies = solid.bodies();
+    if bodies.len() < 2 {
+        return Ok(());
+    }
+    Err(if bodies.iter().any(|b| b.mesh().volume() < 0.0) {
+        unfit("the part has a hollow inside that no mold can form", "fill it, or open it to the outside")
+    } else {
+        unfit("the part is several bodies", "give each a mold of its own")
+    })
+}
+
+/// By how much of itself the volume may change when crossings are mended: what f32 makes of coordinates.
+const MENDED_SHARE: f64 = 1e-6;
+
+/// Crossings of the size of round-off (programs that write f32 make them) are mended by uniting short edges; others are
+/// refused.
+fn uncrossed(part: &Mesh, solid: &Solid) -> Result<Checked, MoldError> {
+    let crossings = |m: &Mesh| cross::within(m, &Bvh::new(m));
+    if part.triangles.len() > CROSSINGS_UP_TO {
+        return Ok(Checked { mesh: part.clone(), mended: None });
+    }
+    let Some(first) = crossings(part).first().copied() else {
+        return Ok(Checked { mesh: part.clone(), mended: None });
+    };
+    for size in stl::details(part) {
+        let plain = solid.plain(size).mesh();
+        let same = (plain.volume() - part.volume()).abs() <= MENDED_SHARE * part.volume();
+        if same && plain.closure() == Closure::Closed && crossings(&plain).is_empty() {
+            let what = format!(
+                "the part's surface crossed itself at {:.3}; edges below {size:.5} mm were united",
+                first.at
+            );
+            return Ok(Checked { mesh: plain, mended: Some(what) });
         }
     }
-    let bodies = solid.bodies();
-    if bodies.len() > 1 {
-        let hollow = bodies.iter().any(|b| b.mesh().volume() < 0.0);
-        let what = if hollow {
-            "the part has a hollow inside that no mold can form"
-        } else {
-            "the part is several bodies"
-        };
-        return Err(unfit(
-            what,
-            if hollow { "fill it, or open it to the outside" } else { "give each a mold of its own" },
-        ));
-    }
-    Ok(solid)
+    Err(unfit(format!("the part's surface crosses itself at {:.3}", first.at), "unite its bodies first"))
 }
 
 /// Depths within this share of the least count as the same; among them the plainer parting wins.
 const SAME_DEPTH: f64 = 0.01;
 
 pub fn ready(part: &Mesh, spec: &MoldSpec) -> Result<Ready, MoldError> {
-    checked(part)?;
+    let Checked { mesh, mended } = checked(part)?;
+    let part = &mesh;
     let search = match spec.pull.map(|d| d.try_normalize()) {
         None => pull::search(part),
         Some(Some(d)) => Search { best: vec![pull::measured(part, d)], looked_at: 1 },
@@ -99,7 +134,7 @@ pub fn ready(part: &Mesh, spec: &MoldSpec) -> Result<Ready, MoldError> {
     let plane = parting::plane(&framed.mesh, &looks, framed.snap);
     let tops = tops(&framed.mesh, spec.figures.vent_prominence.value);
     let pull = answer(&search, chosen, direction, &blocked, &framed);
-    Ok(Ready { solid: Solid::of(&framed.mesh)?, framed, pull, blocked, plane, tops })
+    Ok(Ready { solid: Solid::of(&framed.mesh)?, framed, pull, blocked, plane, tops, mended })
 }
 
 /// Among the directions with the least undercut and about the least depth, the one whose plane leaves least off it.
@@ -153,8 +188,8 @@ fn gang(one: Framed, spec: &MoldSpec) -> Framed {
         mesh.vertices.extend(one.mesh.vertices.iter().map(|v| *v + by));
         mesh.triangles.extend(one.mesh.triangles.iter().map(|t| t.map(|v| v + first)));
     }
-    let mesh = crate::files::stl::snapped(&mesh);
+    let mesh = stl::snapped(&mesh);
     let (lo, hi) = mesh.bounds();
-    let snap = crate::files::stl::snap_distance(lo.abs().max(hi.abs()).max_element());
+    let snap = stl::snap_distance(lo.abs().max(hi.abs()).max_element());
     Framed { mesh, snap, ..one }
 }

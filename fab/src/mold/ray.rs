@@ -36,6 +36,20 @@ pub fn any(target: (&Mesh, &Bvh), origin: DVec3, along: DVec3, from: f64) -> boo
     found
 }
 
+/// How much matter lies right behind a point of the surface along z (`way` is 1 or -1), mm; 0 at a sharp rim.
+pub fn matter((mesh, tree): (&Mesh, &Bvh), from: DVec3, way: f64) -> f64 {
+    let (lo, hi) = mesh.bounds();
+    let hit = first((mesh, tree), from, DVec3::Z * way, (hi - lo).length() * OFF_SURFACE);
+    let leaves = |h: &Hit| {
+        let [a, b, c] = mesh.corners(h.triangle as usize);
+        (b - a).cross(c - a).z * way > 0.0
+    };
+    hit.filter(leaves).map_or(0.0, |h| h.at)
+}
+
+/// Hits nearer than this share of the size are the surface that the ray starts from.
+const OFF_SURFACE: f64 = 1e-7;
+
 /// Calls `f` with hits; it gives how far to look on.
 fn visit((mesh, tree): (&Mesh, &Bvh), origin: DVec3, along: DVec3, f: &mut impl FnMut(Hit) -> f64) {
     let mut todo = if tree.nodes.is_empty() { vec![] } else { vec![0] };

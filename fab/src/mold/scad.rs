@@ -1,55 +1,96 @@
 //! Takes a mold; gives its parametric OpenSCAD source, which makes the same mold from the part's file.
 //!
-//! Not promised: that values other than the ones written leave a mold that opens; the asserts of nothing but sense.
+//! Not promised: that values other than the ones written leave a mold that opens.
 
-use crate::mold::layout::{EDGE, SLOT, rim};
+use crate::mold::layout::{Around, EDGE, SLOT, least_side};
 use crate::mold::plan::Channel;
 use crate::mold::rigid::KEY_TIP;
+use crate::mold::silicone::LIP;
+use crate::mold::tree::FLASK_WALL;
+use crate::mold::wax::Tree;
 use crate::mold::{Kind, Mold};
 use crate::solid::SIDES;
 use glam::DVec3;
 
 const TWO_PART: &str = include_str!("../../scad/two-part.scad");
+const SILICONE: &str = include_str!("../../scad/silicone.scad");
+const TREE: &str = include_str!("../../scad/tree.scad");
 
 pub fn file_name(mold: &Mold, piece: &str) -> String {
     format!("{}.{piece}.mm.stl", mold.name)
 }
 
-/// The source with its places filled in.
-pub fn two_part(mold: &Mold) -> String {
+/// Values that both kinds of two-part molds have.
+fn common(mold: &Mold) -> Vec<(&'static str, String)> {
     let (f, plan) = (&mold.figures, &mold.plan);
     let (low, high) = mold.part.bounds();
-    let of = |kind: Kind| {
-        mold.pieces.iter().find(|p| p.kind == kind).map(|p| file_name(mold, &p.name)).unwrap_or_default()
-    };
-    let least_side = f.key_diameter.value + f.bolt.value + 4.0 * EDGE + 2.0 * SLOT.x;
-    let list = |c: &[Channel]| {
-        let one = |c: &Channel| format!("[{}, {}, {}]", vector(c.foot), c.below, c.above);
-        format!("[{}]", c.iter().map(one).collect::<Vec<_>>().join(", "))
-    };
-    filled(
-        TWO_PART,
-        &[
-            ("part", of(Kind::Part)),
-            ("below", of(Kind::Below)),
-            ("part_low", vector(low)),
-            ("part_high", vector(high)),
-            ("parting", plan.parting.to_string()),
-            ("wall", f.wall.value.to_string()),
-            ("rim", rim(f).to_string()),
-            ("least_side", least_side.to_string()),
-            ("edge", EDGE.to_string()),
-            ("key_diameter", f.key_diameter.value.to_string()),
-            ("key_height", f.key_height.value.to_string()),
-            ("key_clearance", f.key_clearance.value.to_string()),
-            ("key_tip", KEY_TIP.to_string()),
-            ("sprues", list(&plan.sprues)),
-            ("vents", list(&plan.vents)),
-            ("bolt", f.bolt.value.to_string()),
-            ("slot", vector(SLOT)),
-            ("sides", SIDES.to_string()),
-        ],
-    )
+    vec![
+        ("part", of(mold, Kind::Part)),
+        ("part_low", vector(low)),
+        ("part_high", vector(high)),
+        ("parting", plan.parting.to_string()),
+        ("wall", f.wall.value.to_string()),
+        ("least_side", least_side(f).to_string()),
+        ("edge", EDGE.to_string()),
+        ("key_diameter", f.key_diameter.value.to_string()),
+        ("key_height", f.key_height.value.to_string()),
+        ("key_clearance", f.key_clearance.value.to_string()),
+        ("key_tip", KEY_TIP.to_string()),
+        ("sprues", list(&plan.sprues)),
+        ("vents", list(&plan.vents)),
+        ("sides", SIDES.to_string()),
+    ]
+}
+
+fn of(mold: &Mold, kind: Kind) -> String {
+    mold.pieces.iter().find(|p| p.kind == kind).map(|p| file_name(mold, &p.name)).unwrap_or_default()
+}
+
+fn list(channels: &[Channel]) -> String {
+    let one = |c: &Channel| format!("[{}, {}, {}]", vector(c.foot), c.below, c.above);
+    format!("[{}]", channels.iter().map(one).collect::<Vec<_>>().join(", "))
+}
+
+/// The source of a rigid mold, its places filled in.
+pub fn two_part(mold: &Mold) -> String {
+    let f = &mold.figures;
+    let own = [
+        ("below", of(mold, Kind::Below)),
+        ("rim", Around::printed(f).rim.to_string()),
+        ("bolt", f.bolt.value.to_string()),
+        ("slot", vector(SLOT)),
+    ];
+    filled(TWO_PART, &[common(mold), own.to_vec()].concat())
+}
+
+/// The source of the prints for a silicone mold.
+pub fn silicone(mold: &Mold) -> String {
+    let around = Around::silicone(&mold.figures);
+    let own =
+        [("silicone", around.wall.to_string()), ("rim", around.rim.to_string()), ("lip", LIP.to_string())];
+    filled(SILICONE, &[common(mold), own.to_vec()].concat())
+}
+
+/// The source of a lost-wax tree and its flask.
+pub fn tree(mold: &Mold, tree: &Tree) -> String {
+    let runner = mold.figures.runner.value;
+    let (radius, low, high) = crate::mold::wax::flask(tree, &mold.figures);
+    let levels: Vec<String> = tree.levels.iter().map(|(z, n)| format!("[{z}, {n}]")).collect();
+    let values = [
+        ("part", of(mold, Kind::Part)),
+        ("runner", runner.to_string()),
+        ("top", (tree.top - runner).to_string()),
+        ("gate", tree.gate.to_string()),
+        ("reach", tree.reach.to_string()),
+        ("into", tree.into.to_string()),
+        ("levels", format!("[{}]", levels.join(", "))),
+        ("flask_radius", radius.to_string()),
+        ("flask_thick", FLASK_WALL.to_string()),
+        ("flask_low", low.to_string()),
+        ("flask_high", high.to_string()),
+        ("sides", SIDES.to_string()),
+    ];
+    filled(TREE, &values)
 }
 
 pub fn vector(v: DVec3) -> String {

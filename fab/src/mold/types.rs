@@ -209,6 +209,13 @@ pub struct Mold {
     pub tops: Vec<Top>,
 }
 
+impl Mold {
+    /// Everything within the outer walls.
+    pub(crate) fn part_box(&self) -> Mesh {
+        crate::solid::cuboid(self.plan.low, self.plan.high)
+    }
+}
+
 /// A piece as written.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct WrittenPiece {

@@ -27,10 +27,9 @@ pub fn write(mold: &Mold, batch: &mut Batch) -> Result<MoldReport, MoldError> {
     batch.stage(&maps_name, |out| out.write_all(&maps))?;
     let mut report = report(mold, &back);
     report.files.push(maps_name);
-    report.measured.extend(measured(mold, &back)?);
-    let missed: Vec<Finding> =
-        report.measured.iter().filter(|m| !m.kept).map(|m| of_measure(mold, m)).collect();
-    report.findings.extend(missed);
+    let on_files = measured(mold, &back)?;
+    report.findings.extend(on_files.iter().filter(|m| !m.kept).map(|m| of_measure(mold, m)));
+    report.measured.extend(on_files);
     Ok(report)
 }
 
@@ -43,8 +42,9 @@ fn stage(mold: &Mold, piece: &Piece, batch: &mut Batch) -> Result<Mesh, MoldErro
 
 fn measured(mold: &Mold, back: &[Mesh]) -> Result<Vec<Measured>, MoldError> {
     let find = |name: &str| mold.pieces.iter().position(|p| p.name == name).map(|k| &back[k]);
-    match (mold.route, find("lower"), find("upper")) {
-        (Route::Rigid, Some(lower), Some(upper)) => Ok(checks::rigid(mold, &Halves { lower, upper })?),
+    match (mold.route, find("lower"), find("upper"), find("board")) {
+        (Route::Rigid, Some(lower), Some(upper), _) => Ok(checks::rigid(mold, &Halves { lower, upper })?),
+        (Route::Silicone, _, _, Some(board)) => Ok(checks::silicone(mold, board)?),
         _ => Ok(vec![]),
     }
 }

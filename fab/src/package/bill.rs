@@ -42,7 +42,8 @@ pub fn bill(report: &Report) -> Bill {
     let lines = report.routes.iter().flat_map(|r| {
         let kinds = kinds(report, r);
         let finished = kinds.iter().map(|k| finished(k, &r.process)).collect::<Vec<_>>();
-        let printed = kinds.iter().filter(|_| r.process.route != Route::Print && r.process.route.prints_the_shape());
+        let printed =
+            kinds.iter().filter(|_| r.process.route != Route::Print && r.process.route.prints_the_shape());
         let printed: Vec<Line> = printed.map(|k| printed_line(k, &r.process)).collect();
         let poured = (r.process.route.is_metal()).then(|| metal(&kinds, &r.process));
         finished.into_iter().chain(printed).chain(poured).collect::<Vec<_>>()
@@ -54,7 +55,10 @@ pub fn bill(report: &Report) -> Bill {
 fn kinds<'a>(report: &'a Report, route: &'a RouteReport) -> Vec<Kind<'a>> {
     let mut kinds: Vec<Kind> = Vec::new();
     for part in report.parts.iter().filter(|p| p.file.is_some() && route.parts.contains(&p.id)) {
-        let same = |k: &&mut Kind| Some(&k.first.id) == part.same_as.as_ref() || k.first.same_as.is_some() && k.first.same_as == part.same_as;
+        let same = |k: &&mut Kind| {
+            Some(&k.first.id) == part.same_as.as_ref()
+                || k.first.same_as.is_some() && k.first.same_as == part.same_as
+        };
         match kinds.iter_mut().find(same) {
             Some(kind) => kind.ids.push(&part.id),
             None => kinds.push(Kind { first: part, ids: vec![&part.id] }),
@@ -66,7 +70,15 @@ fn kinds<'a>(report: &'a Report, route: &'a RouteReport) -> Vec<Kind<'a>> {
 fn line(what: String, material: &str, count: usize, mm3: f64, density: f64, note: String) -> Line {
     let volume_cm3 = mm3 / MM3_IN_CM3;
     let mass_g = volume_cm3 * density;
-    Line { what, material: material.to_string(), count, volume_cm3, mass_g, total_g: mass_g * count as f64, note }
+    Line {
+        what,
+        material: material.to_string(),
+        count,
+        volume_cm3,
+        mass_g,
+        total_g: mass_g * count as f64,
+        note,
+    }
 }
 
 fn finished(kind: &Kind, process: &Process) -> Line {

@@ -44,7 +44,8 @@ impl Folder {
         }
         let absolute = std::path::absolute(place).map_err(failed("make folder", place))?;
         let parent = absolute.parent().unwrap_or(Path::new("/")).to_path_buf();
-        let made: Vec<PathBuf> = parent.ancestors().take_while(|p| !p.exists()).map(Path::to_path_buf).collect();
+        let made: Vec<PathBuf> =
+            parent.ancestors().take_while(|p| !p.exists()).map(Path::to_path_buf).collect();
         let name = absolute.file_name().unwrap_or_default().to_string_lossy().into_owned();
         let beside = parent.join(format!(".{name}.{}.part", std::process::id()));
         let made: Vec<PathBuf> = made.into_iter().rev().collect();
@@ -118,13 +119,14 @@ impl Folder {
         let new: BTreeSet<&String> = names.iter().collect();
         let gone = stale.iter().filter(|n| !new.contains(n));
         let mut done: Vec<(PathBuf, PathBuf)> = Vec::new();
-        let result = gone.map(|n| (n, false)).chain(names.iter().map(|n| (n, true))).try_for_each(|(name, comes)| {
-            let (from, to) = (self.beside.join(name), self.place.join(name));
-            if to.exists() {
-                step(&to, &aside.join(name), &mut done)?;
-            }
-            if comes { step(&from, &to, &mut done) } else { Ok(()) }
-        });
+        let result =
+            gone.map(|n| (n, false)).chain(names.iter().map(|n| (n, true))).try_for_each(|(name, comes)| {
+                let (from, to) = (self.beside.join(name), self.place.join(name));
+                if to.exists() {
+                    step(&to, &aside.join(name), &mut done)?;
+                }
+                if comes { step(&from, &to, &mut done) } else { Ok(()) }
+            });
         if result.is_err() {
             // Back in the other order; what can not be moved back stays aside and is told by the error's hint.
             done.iter().rev().for_each(|(from, to)| drop(fs::rename(to, from)));
@@ -147,7 +149,7 @@ fn there(path: &Path) -> FileError {
     FileError {
         action: "write",
         path: path.to_path_buf(),
-        cause: io::Error::new(io::ErrorKind::AlreadyExists, "it is there already; name another folder, or replace it with --force"),
+        cause: io::Error::other("it is there already, and is replaced only with --force"),
     }
 }
 
@@ -176,7 +178,8 @@ mod tests {
         let dir = scratch("whole");
         let out = dir.join("a/out");
         let make = |replace, text: &str, names: &[&str], stale: &[String]| {
-            let folder = Folder::new(&out, replace, "list.json")?;
+            let list = if names.contains(&"list.json") { "list.json" } else { "no list" };
+            let folder = Folder::new(&out, replace, list)?;
             names.iter().try_for_each(|n| folder.write(n, text.as_bytes()))?;
             assert!(text != "one" || !out.exists());
             folder.commit(stale)

@@ -4,6 +4,7 @@
 //! lowest. Not promised: the least support of all turns, or that a part without a flat face stands.
 
 use crate::mesh::{Mesh, area};
+use crate::mold::frame::hull;
 use glam::{DQuat, DVec2, DVec3};
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -32,7 +33,9 @@ pub struct Laying {
 pub enum Footing {
     /// Its centre of mass is above the face that it stands on.
     Stands,
-    /// It tips over without supports or a brim.
+    /// It has a flat face on the bed, but its centre of mass is beside it: supports or a brim hold it.
+    Leans,
+    /// No flat face of it is on the bed.
     Tips,
 }
 
@@ -57,7 +60,9 @@ struct Face {
 pub fn lay(mesh: &Mesh) -> Laying {
     let faces: Vec<Face> = (0..mesh.triangles.len()).map(|t| face(mesh.corners(t))).collect();
     let scale = mesh.volume().abs().max(f64::MIN_POSITIVE);
-    let rank = |l: &Laying| (l.footing, (l.support_mm3 / scale / SAME_SUPPORT).round(), (l.height_mm / FLAT).round());
+    let rank = |l: &Laying| {
+        (l.footing, (l.support_mm3 / scale / SAME_SUPPORT).round(), (l.height_mm / FLAT).round())
+    };
     let tried = directions(&faces).into_iter().map(|down| laid(mesh, &faces, down));
     let best = tried.min_by(|a, b| rank(a).partial_cmp(&rank(b)).unwrap_or(std::cmp::Ordering::Equal));
     best.unwrap_or_else(|| laid(mesh, &faces, DVec3::NEG_Z))
@@ -100,9 +105,21 @@ fn laid(mesh: &Mesh, faces: &[Face], down: DVec3) -> Laying {
         }
     }
     let above = (turn * centre_of_mass(mesh)).truncate();
-    let footing = if contact > 0.0 && within(&hull(feet), above) { Footing::Stands } else { Footing::Tips };
+    let footing = match contact > 0.0 {
+        true if within(&hull(feet), above) => Footing::Stands,
+        true => Footing::Leans,
+        false => Footing::Tips,
+    };
     let height_mm = high - low;
-    Laying { turn, down, contact_mm2: contact, overhang_mm2: overhang, support_mm3: support, height_mm, footing }
+    Laying {
+        turn,
+        down,
+        contact_mm2: contact,
+        overhang_mm2: overhang,
+        support_mm3: support,
+        height_mm,
+        footing,
+    }
 }
 
 /// Turned about the vertical so that the box around it is least, its long side along x.
@@ -136,28 +153,9 @@ fn centre_of_mass(mesh: &Mesh) -> DVec3 {
     if sum.0 == 0.0 { o } else { o + sum.1 / sum.0 }
 }
 
-/// The convex hull of points, counter-clockwise (monotone chain).
-fn hull(mut points: Vec<DVec2>) -> Vec<DVec2> {
-    points.sort_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
-    points.dedup();
-    let half = |points: &mut dyn Iterator<Item = DVec2>| {
-        let mut chain: Vec<DVec2> = Vec::new();
-        for p in points {
-            while let [.., a, b] = chain[..]
-                && (b - a).perp_dot(p - a) <= 0.0
-            {
-                chain.pop();
-            }
-            chain.push(p);
-        }
-        chain.pop();
-        chain
-    };
-    [half(&mut points.iter().copied()), half(&mut points.iter().rev().copied())].concat()
-}
-
 fn within(hull: &[DVec2], p: DVec2) -> bool {
-    hull.len() > 2 && (0..hull.len()).all(|k| (hull[(k + 1) % hull.len()] - hull[k]).perp_dot(p - hull[k]) >= 0.0)
+    hull.len() > 2
+        && (0..hull.len()).all(|k| (hull[(k + 1) % hull.len()] - hull[k]).perp_dot(p - hull[k]) >= 0.0)
 }
 
 #[cfg(test)]
@@ -180,7 +178,8 @@ mod tests {
     fn a_needle_on_its_point_tips() {
         let mut mesh = cuboid(DVec3::ZERO, DVec3::ONE);
         // A pyramid of which no face lies below its middle: all faces lean.
-        mesh.vertices = mesh.vertices.iter().map(|v| DVec3::new(v.x * 0.1 + v.z * 5.0, v.y, v.z * 10.0)).collect();
+        mesh.vertices =
+            mesh.vertices.iter().map(|v| DVec3::new(v.x * 0.1 + v.z * 5.0, v.y, v.z * 10.0)).collect();
         assert_eq!(laid(&mesh, &[], DVec3::NEG_Z).footing, Footing::Tips);
     }
 }

@@ -4,7 +4,7 @@
 //! item in the positive octant. Not promised: that a slicer keeps the places on a plate when it is told to arrange.
 
 use super::laying::lay;
-use super::{AssemblyReport, Attachment, LayingReport, PackageReport, PlateReport, low, plate};
+use super::{AssemblyReport, Attachment, CouponReport, LayingReport, PackageReport, PlateReport, low, plate};
 use crate::coupon::Coupon;
 use crate::files::{stems, stl};
 use crate::make::Output;
@@ -24,12 +24,12 @@ pub fn layings(output: &Output) -> Vec<LayingReport> {
         .collect();
     let lay_one = |&p: &usize| {
         let mesh = output.masters[p].as_ref()?;
-        Some(LayingReport { part: parts[p].id.clone(), laying: lay(mesh) })
+        Some(LayingReport { part: parts[p].id.clone(), laying: output.laid[p].unwrap_or_else(|| lay(mesh)) })
     };
     own.par_iter().filter_map(lay_one).collect()
 }
 
-fn route_of<'a>(output: &'a Output, p: usize) -> Option<&'a RouteReport> {
+fn route_of(output: &Output, p: usize) -> Option<&RouteReport> {
     let id = &output.report.parts[p].id;
     output.report.routes.iter().find(|r| r.parts.contains(id))
 }
@@ -39,7 +39,7 @@ fn printed(output: &Output, p: usize) -> bool {
 }
 
 /// The first written part with the same solid, by the same process.
-fn kind_of(output: &Output, p: usize) -> usize {
+pub fn kind_of(output: &Output, p: usize) -> usize {
     let parts = &output.report.parts;
     let root = |q: usize| parts[q].same_as.as_deref().unwrap_or(&parts[q].id);
     let same = |q: &usize| {
@@ -48,7 +48,7 @@ fn kind_of(output: &Output, p: usize) -> usize {
     (0..p).find(same).unwrap_or(p)
 }
 
-fn stem(output: &Output, p: usize) -> String {
+pub fn stem(output: &Output, p: usize) -> String {
     let file = output.report.parts[p].file.as_deref().unwrap_or("part.mm.stl");
     file.trim_start_matches("parts/").trim_end_matches(".mm.stl").to_string()
 }
@@ -79,7 +79,9 @@ pub fn parts(output: &Output, package: &mut PackageReport) -> Vec<Attachment> {
 fn packed(name: &str, model: &Model, package: &mut PackageReport) -> Option<Attachment> {
     let sound = model.objects.iter().all(|o| o.mesh.closure() == Closure::Closed);
     let meshes: Vec<&Mesh> = model.objects.iter().map(|o| &o.mesh).collect();
-    let back = |bytes: &Vec<u8>| -> io::Result<bool> { Ok(threemf::read(bytes)?.iter().collect::<Vec<_>>() == meshes) };
+    let back = |bytes: &Vec<u8>| -> io::Result<bool> {
+        Ok(threemf::read(bytes)?.iter().collect::<Vec<_>>() == meshes)
+    };
     let written = threemf::write(model).and_then(|bytes| Ok((back(&bytes)?, bytes)));
     let why = match written {
         Ok((true, bytes)) if sound => return Some(Attachment { name: name.to_string(), bytes }),
@@ -119,7 +121,12 @@ fn things(output: &Output, route: &RouteReport) -> Vec<Thing> {
     all.filter(|&p| !once || kind_of(output, p) == p).map(thing).collect()
 }
 
-fn plates_of(output: &Output, route: &RouteReport, name: &str, package: &mut PackageReport) -> Vec<Attachment> {
+fn plates_of(
+    output: &Output,
+    route: &RouteReport,
+    name: &str,
+    package: &mut PackageReport,
+) -> Vec<Attachment> {
     let things = things(output, route);
     let mut kinds: Vec<usize> = things.iter().map(|t| t.kind).collect();
     kinds.sort_unstable();
@@ -139,7 +146,8 @@ fn plates_of(output: &Output, route: &RouteReport, name: &str, package: &mut Pac
         let mut used = objects.clone();
         used.sort_unstable();
         used.dedup();
-        let object = |&u: &usize| Object { name: output.report.parts[kinds[u]].id.clone(), mesh: turned[u].clone() };
+        let object =
+            |&u: &usize| Object { name: output.report.parts[kinds[u]].id.clone(), mesh: turned[u].clone() };
         let items = stands.iter().zip(&objects);
         let model = Model {
             title: format!("{} plate {}", output.report.name, k + 1),
@@ -182,7 +190,11 @@ fn too_large(part: &str, size: DVec3, process: &Process) -> Finding {
         place: Place { parts: vec![part.to_string()], at: vec![] },
         what: format!(
             "lies on {:.1} x {:.1} x {:.1} mm; the bed {} takes {x} x {y} x {z} mm less {} mm around; it is on no plate",
-            size.x, size.y, size.z, process.print.bed.name, plate::SPACING
+            size.x,
+            size.y,
+            size.z,
+            process.print.bed.name,
+            plate::SPACING
         ),
         remedy: "name a larger bed with --bed, or take a smaller pitch".into(),
     }
@@ -199,11 +211,15 @@ pub fn assembly(output: &Output, package: &mut PackageReport) -> Vec<Attachment>
         _ => 1.0,
     };
     let finished = finished(output);
-    let all: Vec<Mesh> =
-        finished.iter().map(|(_, m)| m.map(|v| output.report.datum + (v - output.report.datum) * shared)).collect();
+    let all: Vec<Mesh> = finished
+        .iter()
+        .map(|(_, m)| m.map(|v| output.report.datum + (v - output.report.datum) * shared))
+        .collect();
     let corner = all.iter().map(low).fold(DVec3::INFINITY, DVec3::min);
-    let object =
-        |((id, _), m): (&(String, Mesh), &Mesh)| Object { name: id.clone(), mesh: stl::snapped(&m.map(|v| v - corner)) };
+    let object = |((id, _), m): (&(String, Mesh), &Mesh)| Object {
+        name: id.clone(),
+        mesh: stl::snapped(&m.map(|v| v - corner)),
+    };
     let file = "assembly.mm.3mf".to_string();
     let model = Model {
         title: output.report.name.clone(),
@@ -213,7 +229,8 @@ pub fn assembly(output: &Output, package: &mut PackageReport) -> Vec<Attachment>
     };
     let packed = packed(&file, &model, package);
     if packed.is_some() {
-        package.assembly = Some(AssemblyReport { file, scale: shared, components: written.len(), checks: vec![] });
+        package.assembly =
+            Some(AssemblyReport { file, scale: shared, components: written.len(), checks: vec![] });
     }
     packed.into_iter().collect()
 }
@@ -251,7 +268,7 @@ pub fn coupons(package: &mut PackageReport) -> Vec<Attachment> {
             build: Build::Items(vec![(0, DVec3::ZERO, "gauge".into()), (1, low(&coupon.key), "key".into())]),
         };
         files.extend(packed(&format!("coupon/{name}.mm.3mf"), &model, package));
-        package.coupons.push((process, coupon));
+        package.coupons.push(CouponReport { process, coupon });
     }
     files
 }

@@ -58,7 +58,10 @@ pub fn beds() -> Vec<Bed> {
     let side = |c: &mut crate::toml_faults::Cursor, key| {
         c.number_in(key, *BED_SIDES.start(), *BED_SIDES.end(), "mm")
     };
-    read::list(BEDS, "bed", |b| Bed { name: b.text("name"), size: [side(b, "x"), side(b, "y"), side(b, "z")] })
+    read::list(BEDS, "bed", |b| Bed {
+        name: b.text("name"),
+        size: [side(b, "x"), side(b, "y"), side(b, "z")],
+    })
 }
 
 /// A bed by its name or by its size, as in `250 x 210 x 220 mm`; what is wrong otherwise.
@@ -70,7 +73,10 @@ pub fn bed(which: &str) -> Result<Bed, String> {
     let bare = which.trim().trim_end_matches("mm");
     let sides: Vec<f64> = bare.split(['x', 'X', '\u{d7}']).filter_map(|s| s.trim().parse().ok()).collect();
     match sides[..] {
-        [x, y, z] if bare.split(['x', 'X', '\u{d7}']).count() == 3 && sides.iter().all(|s| BED_SIDES.contains(s)) => {
+        [x, y, z]
+            if bare.split(['x', 'X', '\u{d7}']).count() == 3
+                && sides.iter().all(|s| BED_SIDES.contains(s)) =>
+        {
             Ok(Bed { name: format!("{x} x {y} x {z} mm"), size: [x, y, z] })
         }
         _ => {

@@ -30,7 +30,11 @@ impl Measured {
 }
 
 /// Shrinkage in per cent by step, from the length before the step (measured, or by the figures) and after it.
-pub(super) fn shrinkages(process: &Process, all: &[Measured], faults: &mut Vec<FileFault>) -> Vec<(usize, Figure)> {
+pub(super) fn shrinkages(
+    process: &Process,
+    all: &[Measured],
+    faults: &mut Vec<FileFault>,
+) -> Vec<(usize, Figure)> {
     let mut before = COUPON_MM;
     let mut found = Vec::new();
     for (k, step) in process.steps.iter().enumerate() {
@@ -45,7 +49,10 @@ pub(super) fn shrinkages(process: &Process, all: &[Measured], faults: &mut Vec<F
     for m in all.iter().filter(|m| !steps.contains(&m.step.as_str())) {
         faults.push(FileFault {
             line: 0,
-            what: format!("the coupon was measured after a step \"{}\" that {} does not have", m.step, process.name),
+            what: format!(
+                "the coupon was measured after a step \"{}\" that {} does not have",
+                m.step, process.name
+            ),
             hint: format!("its steps: {}", steps.join(", ")),
         });
     }
@@ -53,6 +60,7 @@ pub(super) fn shrinkages(process: &Process, all: &[Measured], faults: &mut Vec<F
 }
 
 fn figure(percent: f64, m: &Measured) -> Figure {
-    let source = format!("measured by the user: {} mm on the coupon's {COUPON_MM} mm bar after {}", m.length, m.step);
+    let source =
+        format!("measured by the user: {} mm on the coupon's {COUPON_MM} mm bar after {}", m.length, m.step);
     Figure { value: percent, unit: "%", low: percent, high: percent, source, grade: Grade::User }
 }

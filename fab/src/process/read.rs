@@ -128,8 +128,8 @@ pub(crate) fn figure(at: &mut Cursor, key: &'static str, kind: impl Into<Bounds>
 }
 
 fn figure_here(t: &mut Cursor, key: &str, kind: Bounds) -> Figure {
-    let [value, low, high] =
-        ["value", "low", "high"].map(|k| t.number_because(k, (kind.least, kind.most), kind.unit, kind.because));
+    let [value, low, high] = ["value", "low", "high"]
+        .map(|k| t.number_because(k, (kind.least, kind.most), kind.unit, kind.because));
     let grade = match t.text_of("grade", &["S", "2", "I", "M"]).as_str() {
         "S" => Grade::S,
         "2" => Grade::SecondHand,

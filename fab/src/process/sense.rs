@@ -33,8 +33,12 @@ const fn kind(unit: &'static str, least: f64, most: f64, because: &'static str) 
     Bounds { unit, least, most, because }
 }
 
-pub(super) const CLEARANCE: Bounds =
-    kind("mm", 0.0, 5.0, "wider than 5 mm is no fit, and a negative one is a press fit, which nothing here can promise");
+pub(super) const CLEARANCE: Bounds = kind(
+    "mm",
+    0.0,
+    5.0,
+    "wider than 5 mm is no fit, and a negative one is a press fit, which nothing here can promise",
+);
 pub(super) const WALL: Bounds = kind("mm", 0.01, 50.0, "a wall has a thickness");
 pub(super) const DENSITY: Bounds = kind("g/cm3", 0.01, 22.6, "from foam to osmium");
 pub(super) const HEAT: Bounds = kind("C", -50.0, 2000.0, "from dry ice to steel");
@@ -81,7 +85,8 @@ pub(super) fn together(top: &mut Cursor, p: &Process) {
         }
     }
     if seen.contains("metal") && seen.iter().any(|s| s.contains("investment")) {
-        let hint = "take the net figure of the step \"metal\" alone, or call the gross one \"solidification\"";
+        let hint =
+            "take the net figure of the step \"metal\" alone, or call the gross one \"solidification\"";
         let what = "the step \"metal\" is net, with the investment's expansion in it, and there is an investment step too";
         top.fault("step", what.into(), hint);
     }
@@ -90,7 +95,11 @@ pub(super) fn together(top: &mut Cursor, p: &Process) {
         top.fault("material", what, "take platinum-cure or tin-cure RTV silicone");
     }
     if p.route == Route::Print && p.cavity.is_some() {
-        top.fault("cavity", "a printed part has no cavity".into(), "take out [cavity], or choose a route that casts");
+        top.fault(
+            "cavity",
+            "a printed part has no cavity".into(),
+            "take out [cavity], or choose a route that casts",
+        );
     }
 }
 
@@ -140,8 +149,14 @@ fn no_such_step(process: &Process, name: &str) -> FileFault {
 fn replace(figure: &mut Figure, value: f64, kind: Bounds, name: &str, faults: &mut Vec<FileFault>) {
     check(value, kind, name, faults);
     // The user knows his workshop: his figure has no range but itself.
-    *figure =
-        Figure { value, unit: kind.unit, low: value, high: value, source: "given by the user".into(), grade: Grade::User };
+    *figure = Figure {
+        value,
+        unit: kind.unit,
+        low: value,
+        high: value,
+        source: "given by the user".into(),
+        grade: Grade::User,
+    };
 }
 
 fn check(value: f64, kind: Bounds, name: &str, faults: &mut Vec<FileFault>) {

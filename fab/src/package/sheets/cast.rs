@@ -24,7 +24,11 @@ pub fn sheet(p: &PackageReport) -> Option<String> {
         if let Some(c) = &r.process.cavity {
             s += &format!(
                 "\nPoured at {} into {}, which bears {} ({}, grade {}).\n",
-                value(&c.pour), c.material, value(&c.bears), c.bears.source, c.bears.grade.sign()
+                value(&c.pour),
+                c.material,
+                value(&c.bears),
+                c.bears.source,
+                c.bears.grade.sign()
             );
         }
         s += &schedule(&r.process.schedule);
@@ -54,9 +58,19 @@ pub fn pour(p: &PackageReport) -> Option<String> {
     if routes.is_empty() {
         return None;
     }
-    let mut s = format!("# Pour sheet: {}\n\nOf the parts alone; what fills sprues, runners and boxes comes on top.\n", p.report.name);
+    let mut s = format!(
+        "# Pour sheet: {}\n\nOf the parts alone; what fills sprues, runners and boxes comes on top.\n",
+        p.report.name
+    );
     for r in routes {
         s += &format!("\n## {}\n", r.process.title);
+        for m in p.mold_sheets.iter().filter(|m| m.process == r.process.name && !m.report.volumes.is_empty())
+        {
+            s += &format!("\n{}, with sprues, runners and boxes:\n", m.report.name);
+            let grams = |v: &crate::mold::Volume| v.grams.map_or(String::new(), |g| format!("{g:.1}"));
+            let row = |v: &crate::mold::Volume| vec![v.of.clone(), short(v.mm3 / MM3_IN_CM3), grams(v)];
+            s += &table(&["volume", "cm3", "g"], m.report.volumes.iter().map(row));
+        }
         let parts = p.report.parts.iter().filter(|q| q.file.is_some() && r.parts.contains(&q.id));
         let row = |q: &crate::report::PartReport| {
             let cm3 = (q.nominal_volume_mm3 - q.removed_mm3) / MM3_IN_CM3;
@@ -65,7 +79,9 @@ pub fn pour(p: &PackageReport) -> Option<String> {
         };
         let head = ["part", "master, cm3", "finished, cm3", &format!("{}, g", r.process.material)];
         s += &table(&head, parts.map(row));
-        for line in p.bill.lines.iter().filter(|l| l.what == "metal to melt" && l.material == r.process.material) {
+        for line in
+            p.bill.lines.iter().filter(|l| l.what == "metal to melt" && l.material == r.process.material)
+        {
             s += &format!("\nMetal to melt: {:.1} g of {} ({}).\n", line.total_g, line.material, line.note);
         }
     }

@@ -4,7 +4,7 @@
 
 use super::table::{short, table};
 use crate::ledger::Entry;
-use crate::package::PackageReport;
+use crate::package::{CouponReport, PackageReport};
 use crate::process::COUPON_MM;
 use crate::report::RouteReport;
 
@@ -26,11 +26,18 @@ pub fn sheet(p: &PackageReport) -> String {
                 e.grade.sign().to_string(),
             ]
         };
-        s += &table(&["step", "shrinks by", "range", "factor", "product so far", "source", "grade"], r.ledger.iter().map(row));
+        s += &table(
+            &["step", "shrinks by", "range", "factor", "product so far", "source", "grade"],
+            r.ledger.iter().map(row),
+        );
         let (low, high) = r.scale_range;
         s += &format!(
             "\nMaster = {:.6} x finished (from {low:.6} to {high:.6} at the ends of the ranges). Air on each face: {} mm finished, {} mm on the master ({}, grade {}).\n",
-            r.scale, r.process.clearance.value, short(r.process.clearance.value * r.scale), r.process.clearance.source, r.process.clearance.grade.sign()
+            r.scale,
+            r.process.clearance.value,
+            short(r.process.clearance.value * r.scale),
+            r.process.clearance.source,
+            r.process.clearance.grade.sign()
         );
         s += &sizes(p, r);
     }
@@ -62,28 +69,45 @@ fn fits(p: &PackageReport) -> String {
             format!("{:?}", g.verdict).to_lowercase(),
         ]
     };
-    s += &table(&["part", "by", "part", "by", "promised, mm", "least gap, mm", ""], p.report.gaps.iter().map(row));
+    s += &table(
+        &["part", "by", "part", "by", "promised, mm", "least gap, mm", ""],
+        p.report.gaps.iter().map(row),
+    );
     s
 }
 
 pub fn coupon(p: &PackageReport) -> String {
     let mut s = format!(
-        "# Coupon: measure before you make\n\nThe coupon is drawn at its true size. Print it at 100 % with the settings of the parts, take it through every step that the parts go through, and measure it after each.\n\n1. **Shrinkage.** Both bars of the L are {COUPON_MM} mm long, outside to outside. Measure both cold, take the mean. Where it is not what the table says, make the package again:\n\n       weavelock fab FILE --measured STEP=LENGTH\n\n   with the length in mm after that step, as in `--measured print=59.80`; several steps with commas. In the spec the same is `[fab.shrinkage]` with `print = \"0.33 %\"`.\n2. **Clearance.** Push the key into the notches, number 1 next to the corner. The first in which it slides without force, and does not rattle, is your fit:\n\n       weavelock fab FILE --clearance \"0.25 mm\"\n\n   or `clearance = \"0.25 mm\"` in the spec's `[fab]`.\n",
-        );
-    for (process, c) in &p.coupons {
+        "# Coupon: measure before you make\n\nThe coupon is drawn at its true size. Print it at 100 % with the settings of the parts, take it through every step that the parts go through (a mold of it, where they are molded), and measure it after each.\n\n1. **Shrinkage.** Both bars of the L are {COUPON_MM} mm long, outside to outside. Measure both cold, take the mean. Where it is not what the table says, make the package again:\n\n       weavelock fab FILE --measured STEP=LENGTH\n\n   with the length in mm after that step, as in `--measured print=59.80`; several steps with commas. In the spec the same is `[fab.shrinkage]` with `print = \"0.33 %\"`.\n2. **Clearance.** Push the key into the notches, number 1 next to the corner. The first in which it slides without force, and does not rattle, is your fit:\n\n       weavelock fab FILE --clearance \"0.25 mm\"\n\n   or `clearance = \"0.25 mm\"` in the spec's `[fab]`.\n",
+    );
+    for CouponReport { process, coupon: c } in &p.coupons {
         let Some(r) = p.report.routes.iter().find(|r| r.process.name == *process) else { continue };
         s += &format!("\n## {}\n", r.process.title);
         let mut length = c.bar_mm;
         let expected = |e: &Entry| {
             length *= 1.0 - e.shrinkage_percent / 100.0;
-            vec![format!("after {}", e.step), format!("{length:.2} mm"), format!("`--measured {}=...`", e.step)]
+            vec![
+                format!("after {}", e.step),
+                format!("{length:.2} mm"),
+                format!("`--measured {}=...`", e.step),
+            ]
         };
-        s += &table(&["bar of the L", "expected", "where to put your figure"], r.ledger.iter().map(expected).collect::<Vec<_>>());
+        s += &table(
+            &["bar of the L", "expected", "where to put your figure"],
+            r.ledger.iter().map(expected).collect::<Vec<_>>(),
+        );
         let notch = |n: &crate::coupon::Notch| {
-            vec![n.number.to_string(), format!("{:.2} mm", n.width_mm), format!("{} mm", short(n.clearance_mm))]
+            vec![
+                n.number.to_string(),
+                format!("{:.2} mm", n.width_mm),
+                format!("{} mm", short(n.clearance_mm)),
+            ]
         };
         s += &table(&["notch", "width as drawn", "air on each face"], c.notches.iter().map(notch));
-        s += &format!("The key is {:.2} mm wide; built in now: {} mm on each face.\n", c.key_mm, r.process.clearance.value);
+        s += &format!(
+            "The key is {:.2} mm wide; built in now: {} mm on each face.\n",
+            c.key_mm, r.process.clearance.value
+        );
     }
     s
 }

@@ -23,7 +23,15 @@ pub fn sheet(p: &PackageReport) -> Option<String> {
         s += &table(&["plate", "bed", "stands on it", "filament"], plates.map(plate));
         let lies = p.layings.iter().filter(|l| r.parts.contains(&l.part));
         s += "\nHow each lies (parts of the same shape alike):\n";
-        let head = ["part", "down is (in the assembly)", "touches the bed, mm2", "overhangs, mm2", "height, mm", "layers", ""];
+        let head = [
+            "part",
+            "down is (in the assembly)",
+            "touches the bed, mm2",
+            "overhangs, mm2",
+            "height, mm",
+            "layers",
+            "",
+        ];
         s += &table(&head, lies.map(|l| laying(l, r.process.print.layer.value)));
     }
     Some(s)
@@ -61,7 +69,8 @@ fn plate(q: &PlateReport) -> Vec<String> {
 fn laying(l: &LayingReport, layer: f64) -> Vec<String> {
     let d = l.laying.down;
     let supports = match (l.laying.footing, l.laying.overhang_mm2 > 0.0) {
-        (Footing::Tips, _) => "tips: supports and a brim",
+        (Footing::Tips, _) => "no flat face below: supports and a brim, or a raft",
+        (Footing::Leans, _) => "supports below what overhangs, and a brim: it does not stand by itself",
         (Footing::Stands, true) => "supports below what overhangs",
         (Footing::Stands, false) => "no supports",
     };

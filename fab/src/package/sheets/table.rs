@@ -6,7 +6,8 @@ use crate::process::Figure;
 
 /// A table with a head.
 pub fn table(head: &[&str], rows: impl IntoIterator<Item = Vec<String>>) -> String {
-    let line = |cells: &[String]| format!("| {} |\n", cells.iter().map(|c| cell(c)).collect::<Vec<_>>().join(" | "));
+    let line =
+        |cells: &[String]| format!("| {} |\n", cells.iter().map(|c| cell(c)).collect::<Vec<_>>().join(" | "));
     let head: Vec<String> = head.iter().map(ToString::to_string).collect();
     let rule = vec!["---".to_string(); head.len()];
     let rows: String = rows.into_iter().map(|r| line(&r)).collect();

@@ -1,0 +1,122 @@
+//! Takes a ready part; gives its rigid mold in two halves, or the finding that it would not open.
+//!
+//! Not promised: that zero draft releases by itself; how much of it there is, is said.
+
+use crate::mold::checks::CAVITY_SHARE;
+use crate::mold::fill;
+use crate::mold::layout::{self, Around};
+use crate::mold::make::{blank, extra, finding, push, source};
+use crate::mold::parting;
+use crate::mold::pictures;
+use crate::mold::prepare::Ready;
+use crate::mold::rigid;
+use crate::mold::{Kind, Mold, MoldError, MoldSpec, Volume, scad};
+use crate::report::{Finding, Severity};
+use crate::solid::Solid;
+use glam::DVec3;
+
+/// How much wider the steps of the file for OpenSCAD are, mm: so that two that meet in an edge overlap.
+const FAT: f64 = 0.02;
+
+pub fn mold(ready: Ready, spec: &MoldSpec) -> Result<Mold, MoldError> {
+    let plan = layout::plan(
+        &ready.framed.mesh,
+        ready.plane.height,
+        &ready.tops,
+        &spec.figures,
+        Around::printed(&spec.figures),
+    );
+    let snap = ready.framed.snap;
+    let (cavity, grown) = filled(&ready)?;
+    let mut mold = blank(&ready, spec, plan, spec.figures.draft.value);
+    let stuck = ready.pull.undercut_reach_mm > spec.figures.snap.value && grown.is_none();
+    mold.findings.extend(undercut_finding(&mold, grown, stuck));
+    mold.extras.push(pictures::maps(&mold));
+    if stuck {
+        return Ok(mold);
+    }
+    let cavity = cavity.as_ref().unwrap_or(&ready.solid);
+    let below = parting::below((mold.plan.low, mold.plan.high), cavity, &ready.plane, snap, 0.0)?;
+    let tools = rigid::Tools::of(&mold.plan, &spec.figures)?;
+    for (name, half, pull) in rigid::halves(cavity, &below, &mold.plan, &tools)? {
+        push(&mut mold, name, Kind::Half, &half, pull, 1);
+    }
+    mold.pieces.push(source("part", Kind::Part, &mold.part));
+    if ready.plane.wrong > 0.0 {
+        let file = parting::below((mold.plan.low, mold.plan.high), &ready.solid, &ready.plane, snap, FAT)?;
+        push(&mut mold, "below", Kind::Below, &file, DVec3::ZERO, 0);
+    }
+    mold.findings.extend(draft_finding(&mold));
+    let channels = tools.above.minus(cavity).common(&Solid::of(&mold.part_box())?);
+    mold.volumes.push(Volume { of: "cavity".into(), mm3: cavity.volume(), grams: None });
+    mold.volumes.push(Volume { of: "channels and slots".into(), mm3: channels.volume(), grams: None });
+    extra(&mut mold, "scad", scad::two_part);
+    mold.extras.push(pictures::opened(&mold));
+    Ok(mold)
+}
+
+/// The part with its undercuts filled, where they are within what the cavity may be off; and how much came to it.
+fn filled(ready: &Ready) -> Result<(Option<Solid>, Option<f64>), MoldError> {
+    if !ready.blocked.is_real() {
+        return Ok((None, Some(0.0)));
+    }
+    // Worth trying only where the air can be little: its volume is at least that of the overlaps' own columns.
+    if ready.pull.undercut_reach_mm > WORTH_FILLING {
+        return Ok((None, None));
+    }
+    let (solid, grown) = fill::fill(&ready.solid, &ready.framed.mesh, &ready.blocked)?;
+    let little = grown <= CAVITY_SHARE / 2.0 * ready.solid.volume();
+    Ok(if little { (Some(solid), Some(grown)) } else { (None, None) })
+}
+
+/// Undercuts wider than this are features, mm, not slips of the facets: a tenth of the finest nozzle.
+const WORTH_FILLING: f64 = 0.04;
+
+fn undercut_finding(mold: &Mold, grown: Option<f64>, stuck: bool) -> Option<Finding> {
+    let p = &mold.pull;
+    let worst = mold.maps.undercut_mm2.iter().enumerate().max_by(|a, b| a.1.total_cmp(b.1));
+    let at: Vec<DVec3> =
+        worst.map(|(t, _)| mold.part.corners(t).iter().sum::<DVec3>() / 3.0).into_iter().collect();
+    let (area, wide) = (p.undercut_mm2, p.undercut_reach_mm);
+    if stuck {
+        let what = format!(
+            "{area:.3} mm2 are undercut in every direction looked at, here {wide:.2} mm wide; a rigid mold in two halves would not open, and none is made"
+        );
+        return Some(finding(mold, Severity::Error, at, what, "take the silicone route, or divide the part"));
+    }
+    match grown {
+        Some(g) if g > 0.0 => Some(finding(
+            mold,
+            Severity::Note,
+            at,
+            format!(
+                "{area:.4} mm2 of undercut, at most {wide:.4} mm wide, are filled in the cavity ({g:.6} mm3)"
+            ),
+            "nothing to do: it is below what the cavity may be off",
+        )),
+        None if area > 0.0 => Some(finding(
+            mold,
+            Severity::Warning,
+            at,
+            format!(
+                "{area:.3} mm2 of undercut, at most {wide:.3} mm wide, stay: the casting must snap over them"
+            ),
+            "take the silicone route where the cast material is stiff",
+        )),
+        _ => None,
+    }
+}
+
+fn draft_finding(mold: &Mold) -> Option<Finding> {
+    let (low, least) = (mold.maps.low_draft_mm2, mold.figures.draft.value);
+    (low > 0.0).then(|| {
+        let what = format!("{low:.1} mm2 of the part have less than {least} degrees of draft along the pull");
+        finding(
+            mold,
+            Severity::Warning,
+            vec![],
+            what,
+            "use a release agent, or the silicone route, which needs no draft",
+        )
+    })
+}
