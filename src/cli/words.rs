@@ -48,7 +48,10 @@ pub fn verified(a: &Verified) -> Chapter {
             Arithmetic::RoundOff => "to round-off",
             Arithmetic::None => "no claim",
         };
-        let least = p.least_force.map_or(String::new(), |f| format!("; least force {f:.6} or more"));
+        let least = p.least_force.map_or(String::new(), |f| {
+            // Rounded down: it is a bound.
+            format!("; least force {:.6} or more", (f * 1e6).floor() / 1e6)
+        });
         fact(about, format!("{how}: {}{least}", p.how))
     };
     let facts = a.proofs.iter().map(proof).collect();
