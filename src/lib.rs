@@ -16,6 +16,7 @@ pub mod fabricate;
 pub mod fault;
 pub mod flex;
 pub mod input;
+pub mod interlock;
 pub mod locking;
 pub mod made;
 pub mod profile;

@@ -97,7 +97,7 @@ fn random_held(dice: &mut Dice, count: usize) -> Vec<bool> {
     (0..count).map(|k| some && k != free && dice.below(2) == 0).collect()
 }
 
-fn random_voxels(dice: &mut Dice) -> Made {
+pub fn random_voxels(dice: &mut Dice) -> Made {
     let size = [2, 1, 1].map(|least| least + dice.below(3) as i32);
     let at = |k: usize| {
         let k = k as i32;
@@ -114,7 +114,7 @@ fn random_voxels(dice: &mut Dice) -> Made {
 }
 
 /// A block of cubes, each cut into six tetrahedra about its diagonal; corners moved by whole sixteenths.
-fn random_tetrahedra(dice: &mut Dice) -> Made {
+pub fn random_tetrahedra(dice: &mut Dice) -> Made {
     let size = [2, 1 + dice.below(2) as i32, 1 + dice.below(2) as i32];
     let mut corner: BTreeMap<Voxel, DVec3> = BTreeMap::new();
     let mut tetrahedra: Vec<[Voxel; 4]> = Vec::new();

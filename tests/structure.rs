@@ -19,7 +19,7 @@ const FLOW: [&[&str]; 17] = [
     &["blocking", "locking"],
     &["sequence"],
     &["made"],
-    &["repeats", "flex", "chirality", "fabricate", "sampling"],
+    &["repeats", "flex", "chirality", "fabricate", "sampling", "interlock"],
     &["report"],
     &["verify", "atlas"],
     &["cli"],

@@ -1,12 +1,11 @@
 //! Takes written parts; asks the programs of others about each, and about each pair that comes near.
 
-use crate::check::openscad::OpenScad;
+use crate::check::openscad::{OpenScad, Pair};
 use crate::check::{Check, Outcome, Programs, admesh, check, slicer};
 use crate::make::Piece;
 use crate::report::{PairCheck, PartReport, Report};
 use glam::DVec3;
 use rayon::prelude::*;
-use std::collections::BTreeMap;
 use std::path::Path;
 
 type Scad<'a> = Result<&'a OpenScad, Outcome>;
@@ -21,7 +20,7 @@ pub(crate) fn check_all(report: &mut Report, pieces: &[Piece], programs: &Progra
         let Some(file) = part.file.as_ref().map(Path::new) else { return vec![] };
         vec![
             volume(&scad, programs, file, part, high(piece)),
-            slicer::part(&programs.slicer, &names.0, file),
+            slicer::bodies(&programs.slicer, &names.0, file, part.read_back.shells()),
             admesh::part(&programs.admesh, &names.1, file),
         ]
     };
@@ -42,17 +41,16 @@ fn volume(scad: &Scad, programs: &Programs, file: &Path, part: &PartReport, high
     }
 }
 
-/// Every pair whose gap was measured and of which both parts are written.
+/// Every pair whose gap was measured and of which both parts are written; at finished size where their scales differ.
 fn pairs(report: &Report, scad: &Scad, programs: &Programs, high: DVec3) -> Vec<PairCheck> {
-    let files: BTreeMap<&str, &Path> =
-        report.parts.iter().filter_map(|p| Some((p.id.as_str(), Path::new(p.file.as_ref()?)))).collect();
+    let part = |id: &str| report.parts.iter().find(|p| p.id == id).filter(|p| p.file.is_some());
     let wanted: Vec<_> =
-        report.gaps.iter().filter_map(|g| Some((g, (*files.get(&*g.a)?, *files.get(&*g.b)?)))).collect();
-    let paths: Vec<(&Path, &Path)> = wanted.iter().map(|w| w.1).collect();
+        report.gaps.iter().filter_map(|g| Some((g, pair(part(&g.a)?, part(&g.b)?)?))).collect();
+    let asked: Vec<Pair> = wanted.iter().map(|w| w.1).collect();
     let checks = match scad {
-        Ok(scad) => scad.apart(&paths, high),
+        Ok(scad) => scad.apart(&asked, report.datum, high),
         Err(why) => {
-            paths.iter().map(|_| check(&programs.openscad, "shares no volume", Err(why.clone()))).collect()
+            asked.iter().map(|_| check(&programs.openscad, "shares no volume", Err(why.clone()))).collect()
         }
     };
     wanted
@@ -60,4 +58,11 @@ fn pairs(report: &Report, scad: &Scad, programs: &Programs, high: DVec3) -> Vec<
         .zip(checks)
         .map(|((g, _), check)| PairCheck { a: g.a.clone(), b: g.b.clone(), check })
         .collect()
+}
+
+fn pair<'a>(a: &'a PartReport, b: &'a PartReport) -> Option<Pair<'a>> {
+    let files = [Path::new(a.file.as_ref()?), Path::new(b.file.as_ref()?)];
+    // Where both are scaled alike, whether they share volume does not depend on it.
+    let factors = if a.scale == b.scale { [1.0; 2] } else { [1.0 / a.scale, 1.0 / b.scale] };
+    Some(Pair { files, factors })
 }

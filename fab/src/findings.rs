@@ -7,12 +7,15 @@ use crate::make::crossings;
 use crate::mesh::{Closure, Mesh};
 use crate::offset::{Failure, Why};
 use crate::report::{Finding, PartReport, Place, Report, RouteReport, Severity};
+use crate::shave::NotShaved;
 use glam::DVec3;
 
 const SMALLER: &str = "take a smaller clearance, a larger pitch, or a shape with thicker walls there";
 const CROSSING: &str =
     "take a smaller clearance, and look whether the solid that came in crosses itself there already";
 const BODIES: &str = "take a smaller clearance; where the solid that came in has several bodies already, give each an id of its own";
+const PINCHED: &str =
+    "move the bodies apart or let them overlap; where both sides of the edge are contact, give a clearance";
 const OURS: &str = "this is a fault of the program: please report it with the input";
 
 fn error(id: &str, at: Vec<DVec3>, what: String, remedy: &str) -> Finding {
@@ -31,13 +34,44 @@ pub fn of_failure(id: &str, failure: &Failure) -> Finding {
     error(id, vec![failure.at], format!("{what}; nothing is written for the part"), SMALLER)
 }
 
+/// That a part was carved, and what the exact move failed of.
+pub fn of_carving(id: &str, failed: &[Finding]) -> Finding {
+    let why = failed.first().map_or(String::new(), |f| format!(" ({})", f.what));
+    let place = Place {
+        parts: vec![id.to_string()],
+        at: failed.iter().flat_map(|f| f.place.at.clone()).take(1).collect(),
+    };
+    Finding {
+        severity: Severity::Note,
+        place,
+        what: format!(
+            "moving its faces exactly failed{why}; it was carved by blocks instead, and has more air at edges and corners"
+        ),
+        remedy: "nothing, where the gaps that were measured do; else a smaller clearance".into(),
+    }
+}
+
+/// That a print face stays as it was.
+pub fn of_shaving(id: &str, why: &NotShaved) -> Finding {
+    Finding {
+        severity: Severity::Warning,
+        place: Place { parts: vec![id.to_string()], at: vec![] },
+        what: format!("its print face was left as it is: {why}"),
+        remedy: "flatten it with --flatten first, or compensate in the slicer".into(),
+    }
+}
+
 /// What keeps a mesh on the master from being written.
 pub fn of_mesh(id: &str, master: &Mesh, scale: &Scale) -> Vec<Finding> {
     let mut found = Vec::new();
     if let Closure::Open { edges, at } = master.closure() {
-        let what =
-            format!("{edges} edges are not between two opposite triangles; nothing is written for the part");
-        found.push(error(id, vec![scale.down(at)], what, SMALLER));
+        let pinched = master.is_pinched();
+        let what = if pinched {
+            "the surface meets itself in an edge, where the part would hang together by nothing; it is not written".to_string()
+        } else {
+            format!("{edges} edges are not between two opposite triangles; nothing is written for the part")
+        };
+        found.push(error(id, vec![scale.down(at)], what, if pinched { PINCHED } else { SMALLER }));
         return found;
     }
     if let Some(c) = crossings(master).first() {
@@ -45,10 +79,9 @@ pub fn of_mesh(id: &str, master: &Mesh, scale: &Scale) -> Vec<Finding> {
             "the clearance makes the surface cross itself; nothing is written for the part".to_string();
         found.push(error(id, vec![scale.down(c.at)], what, CROSSING));
     }
-    let topology = master.topology();
-    if topology.bodies != 1 {
-        let what =
-            format!("the part as made is {} bodies, not one; nothing is written for it", topology.bodies);
+    let solids = master.shells().iter().filter(|v| **v > 0.0).count();
+    if solids != 1 {
+        let what = format!("the part as made is {solids} bodies, not one; nothing is written for it");
         found.push(error(id, vec![], what, BODIES));
     }
     found
@@ -70,7 +103,8 @@ pub fn collect(report: &mut Report) {
     }
     found.extend(report.routes.iter().filter_map(|r| of_shrinkage(report, r)));
     found.extend(report.routes.iter().filter_map(of_no_clearance));
-    found.extend(report.parts.iter().flat_map(of_walls));
+    found.extend(report.parts.iter().filter(|p| p.same_as.is_none()).flat_map(of_walls));
+    found.extend(report.parts.iter().filter_map(of_hollows));
     report.findings.extend(found);
     report.findings.sort_by_key(|f| std::cmp::Reverse(f.severity));
     let mut seen = std::collections::BTreeSet::new();
@@ -149,6 +183,19 @@ fn of_no_clearance(route: &RouteReport) -> Option<Finding> {
         place: Place { parts: route.parts.clone(), at: vec![] },
         what,
         remedy,
+    })
+}
+
+/// Hollows that nothing can be taken out of.
+fn of_hollows(part: &PartReport) -> Option<Finding> {
+    let hollows = part.read_back.hollows.filter(|h| *h > 0)?;
+    Some(Finding {
+        severity: Severity::Warning,
+        place: Place { parts: vec![part.id.clone()], at: vec![] },
+        what: format!(
+            "{hollows} closed hollows: supports, resin and wax stay inside, and a casting needs a core"
+        ),
+        remedy: "split the part, or open the hollow".into(),
     })
 }
 

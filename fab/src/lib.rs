@@ -5,8 +5,8 @@
 //! shape -> offset { body -> weld -> split -> settle -> relief } -> ledger (scale) -> files -> gap, wall -> check -> report -> package
 //! ```
 //!
-//! `make` goes through all of it; `mold` makes the mold of one part, by the booleans of `solid`. Not promised: that `make`
-//! calls `mold`, and walls against the least wall of a process; both are said in the report.
+//! `make` goes through all of it; `mold` makes the mold of one part, by the booleans of `solid`, and `package` puts molds
+//! to the parts that need one. Not promised: that every wall keeps the least wall of a process; where one does not is said.
 
 pub mod bvh;
 pub mod check;
@@ -24,9 +24,11 @@ pub mod mold;
 pub mod near;
 pub mod offset;
 pub mod package;
+pub mod pinch;
 pub mod process;
 pub mod report;
 pub mod shape;
+pub mod shave;
 pub mod solid;
 pub mod threemf;
 mod toml_faults;

@@ -14,9 +14,12 @@ use crate::gap::{self, Gap, Made, Promise, Verdict};
 use crate::ledger::Scale;
 use crate::mesh::Mesh;
 use crate::offset::{self, Aim, Offset};
+use crate::package::laying::{Laying, lay};
+use crate::pinch;
 use crate::process::Process;
 use crate::report::{Finding, PartReport, ReadBack, Report, RouteReport};
 use crate::shape::{Fault, Job, Role};
+use crate::shave::{self, Shaving};
 use crate::wall;
 use glam::DVec3;
 use rayon::prelude::*;
@@ -82,6 +85,9 @@ pub enum FabError {
     Job(Vec<Fault>),
     #[error(transparent)]
     File(#[from] FileError),
+    /// The file of figures that the program carries.
+    #[error("{0}")]
+    Figures(String),
 }
 
 /// The least altitude of a triangle, in snap distances: snapping moves three corners by one each, so that 4 can not turn
@@ -102,17 +108,23 @@ pub(crate) struct Piece {
     pub stem: String,
     pub scale: Scale,
     pub offset: Offset,
+    /// How it lies on the bed, where its print face was shaved.
+    pub laid: Option<Laying>,
     /// On the master, as f32 can hold it.
     pub master: Mesh,
     /// What was read back, at finished size; `None` where the part is not to be written.
     pub made: Option<Made>,
+    /// What keeps it from being written, and what does not.
     pub faults: Vec<Finding>,
+    pub notes: Vec<Finding>,
 }
 
 /// What was made: the report, and the meshes on the master in the order of the parts (`None`: not written).
 pub struct Output {
     pub report: Report,
     pub masters: Vec<Option<Mesh>>,
+    /// How parts lie whose print face was shaved; `None` where nothing was.
+    pub laid: Vec<Option<Laying>>,
 }
 
 /// Makes everything: offsets, files, measurements, findings.
@@ -122,6 +134,7 @@ pub fn make(job: &Job, recipe: &Recipe, folder: &Path) -> Result<Report, FabErro
 
 /// The same, with the meshes.
 pub fn output(job: &Job, recipe: &Recipe, folder: &Path) -> Result<Output, FabError> {
+    let job = &Job { shapes: job.shapes.iter().map(pinch::parted).collect(), ..job.clone() };
     let faults = [job.faults(), recipe.faults(job)].concat();
     if !faults.is_empty() {
         return Err(FabError::Job(faults));
@@ -145,8 +158,9 @@ pub fn output(job: &Job, recipe: &Recipe, folder: &Path) -> Result<Output, FabEr
         external::check_all(&mut report, &pieces, programs);
     }
     findings::collect(&mut report);
+    let laid = pieces.iter().map(|p| p.laid).collect();
     let masters = pieces.into_iter().map(|p| p.made.is_some().then_some(p.master)).collect();
-    Ok(Output { report, masters })
+    Ok(Output { report, masters, laid })
 }
 
 /// How far writing in f32 moves a point of the finished assembly, mm: the worst over all routes.
@@ -187,7 +201,48 @@ fn pieces(job: &Job, recipe: &Recipe, snap: f64, scales: Vec<Scale>) -> Vec<Piec
             best = again;
         }
     }
+    best.par_iter_mut().enumerate().for_each(|(p, piece)| {
+        carve(job, p, aims[p].depth, piece);
+        shave(recipe.process_of(&job.parts[p].id), piece);
+    });
     best
+}
+
+/// The fallback: the part less a block around each contact facet, where no move was found.
+fn carve(job: &Job, p: usize, depth: f64, failed: &mut Piece) {
+    if failed.faults.is_empty() {
+        return;
+    }
+    let part = &job.parts[p];
+    let contact: Vec<bool> = part.roles.iter().map(|r| *r != Role::Outer).collect();
+    let Ok(Some(mesh)) = offset::carve::carve(&job.shapes[part.shape], &contact, depth) else { return };
+    let mesh = mesh.map(|v| part.pose.transform_point3(v));
+    let offset = Offset { mesh, collapses: 0, longest_move: depth * CORNER, same_as: p, failures: vec![] };
+    let mut carved = piece(&failed.id, failed.stem.clone(), offset, failed.scale.clone());
+    if carved.faults.is_empty() {
+        carved.notes.push(findings::of_carving(&failed.id, &failed.faults));
+        *failed = carved;
+    }
+}
+
+/// How far carving goes at a corner, in depths: along the diagonal of a square.
+const CORNER: f64 = std::f64::consts::SQRT_2;
+
+/// Slice and chamfer of what is printed in the part's own shape.
+fn shave(process: &Process, piece: &mut Piece) {
+    let print = &process.print;
+    let what = Shaving { flatten: print.flatten.value, chamfer: print.elephant_foot.value };
+    if what.is_off() || !process.route.prints_the_shape() || !piece.faults.is_empty() {
+        return;
+    }
+    let laying = lay(&piece.master);
+    match shave::shaved(&piece.master, &laying, what) {
+        Ok(master) => {
+            piece.faults.extend(findings::of_mesh(&piece.id, &master, &piece.scale));
+            (piece.master, piece.laid) = (master, Some(laying));
+        }
+        Err(why) => piece.notes.push(findings::of_shaving(&piece.id, &why)),
+    }
 }
 
 /// Where the exact move fails, edges so many times longer are united first, and so many times: 0.02, 0.08, 0.32 and 1.28
@@ -202,7 +257,7 @@ fn piece(id: &str, stem: String, offset: Offset, scale: Scale) -> Piece {
     let master = stl::snapped(&offset.mesh.map(|v| scale.up(v)));
     let mut faults: Vec<Finding> = offset.failures.iter().map(|f| findings::of_failure(id, f)).collect();
     faults.extend(findings::of_mesh(id, &master, &scale));
-    Piece { id: id.to_string(), stem, scale, offset, master, made: None, faults }
+    Piece { id: id.to_string(), stem, scale, offset, laid: None, master, made: None, faults, notes: vec![] }
 }
 
 /// Gaps of what was read back; a piece that comes too near to another is not to be written.
@@ -240,8 +295,8 @@ fn report(job: &Job, recipe: &Recipe, pieces: &[Piece], gaps: Vec<Gap>, folder: 
         gaps,
         pair_checks: vec![],
         molds: vec![],
-        molds_note: "molds are not built yet".into(),
-        findings: pieces.iter().flat_map(|p| p.faults.clone()).collect(),
+        molds_note: "a package makes them".into(),
+        findings: pieces.iter().flat_map(|p| [&p.faults[..], &p.notes].concat()).collect(),
     }
 }
 
@@ -307,7 +362,7 @@ fn part_report(job: &Job, pieces: &[Piece], p: usize, recipe: &Recipe, folder: &
     let (part, piece) = (&job.parts[p], &pieces[p]);
     let process = recipe.process_of(&part.id);
     let shape = &job.shapes[part.shape];
-    let (nominal, finished) = (shape.volume(), piece.offset.mesh.volume());
+    let (nominal, finished) = (shape.volume(), piece.master.volume() / piece.scale.factor.powi(3));
     let [stl_name, obj_name] = file_names(&piece.stem).map(|name| folder.join(name).display().to_string());
     let same = piece.offset.same_as;
     PartReport {
@@ -317,7 +372,8 @@ fn part_report(job: &Job, pieces: &[Piece], p: usize, recipe: &Recipe, folder: &
         clearance_mm: process.clearance.value,
         file: piece.made.as_ref().map(|_| stl_name),
         obj: piece.made.as_ref().filter(|_| recipe.obj).map(|_| obj_name),
-        same_as: (same != p).then(|| job.parts[same].id.clone()),
+        // Congruent parts may have been laid on different faces to be shaved.
+        same_as: (same != p && piece.laid.is_none()).then(|| job.parts[same].id.clone()),
         read_back: piece.made.as_ref().map(|_| ReadBack::of(&piece.master)).unwrap_or_default(),
         expected_volume_mm3: piece.master.volume(),
         nominal_volume_mm3: nominal,

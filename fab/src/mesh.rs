@@ -80,6 +80,16 @@ impl Mesh {
         uses.into_iter().filter(|(_, n)| *n != (1, 1)).map(|(e, _)| e).collect()
     }
 
+    /// Whether every edge is used as often in one direction as in the other, and some more than once: sheets that touch
+    /// in an edge.
+    pub fn is_pinched(&self) -> bool {
+        let mut uses: BTreeMap<(u32, u32), i64> = BTreeMap::new();
+        let sides = |t: &[u32; 3]| [(t[0], t[1]), (t[1], t[2]), (t[2], t[0])];
+        self.triangles.iter().flat_map(sides).for_each(|e| *uses.entry(e).or_default() += 1);
+        let balanced = uses.iter().all(|((a, b), n)| uses.get(&(*b, *a)) == Some(n));
+        balanced && uses.values().any(|n| *n > 1)
+    }
+
     /// Bodies and genus of a closed mesh (V - E + F = 2 bodies - 2 genus, with E = 3F / 2).
     pub fn topology(&self) -> Topology {
         let mut root: Vec<usize> = (0..self.vertices.len()).collect();
@@ -95,6 +105,31 @@ impl Mesh {
         let bodies = (0..root.len()).filter(|&v| used[v] && find(&mut root, v) == v).count();
         let (v, f) = (used.iter().filter(|u| **u).count() as i64, self.triangles.len() as i64);
         Topology { bodies, genus: bodies as i64 - (v - f / 2) / 2 }
+    }
+
+    /// Signed volume of each connected piece of surface, mm3, in the order of their first triangles: positive around
+    /// material, negative around a hollow.
+    pub fn shells(&self) -> Vec<f64> {
+        let mut root: Vec<usize> = (0..self.vertices.len()).collect();
+        for t in &self.triangles {
+            for v in &t[1..] {
+                let (a, b) = (find(&mut root, t[0] as usize), find(&mut root, *v as usize));
+                root[b] = a;
+            }
+        }
+        let (lo, hi) = self.bounds();
+        let o = (lo + hi) / 2.0;
+        let mut number: BTreeMap<usize, usize> = BTreeMap::new();
+        let mut volumes: Vec<f64> = Vec::new();
+        for (t, tri) in self.triangles.iter().enumerate() {
+            let k = *number.entry(find(&mut root, tri[0] as usize)).or_insert_with(|| {
+                volumes.push(0.0);
+                volumes.len() - 1
+            });
+            let [a, b, c] = self.corners(t).map(|p| p - o);
+            volumes[k] += a.dot(b.cross(c)) / 6.0;
+        }
+        volumes
     }
 
     /// The same mesh with every vertex moved.
@@ -137,6 +172,16 @@ pub(crate) mod tests {
         assert_eq!(m.closure(), Closure::Closed);
         assert_eq!(m.topology(), Topology { bodies: 1, genus: 0 });
         assert!((m.volume() - 6.0).abs() < 1e-9 && (m.area() - 22.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn a_hollow_box_is_one_solid_with_a_hollow() {
+        let mut m = cuboid(DVec3::ZERO, DVec3::splat(3.0));
+        let inner = cuboid(DVec3::ONE, DVec3::splat(2.0));
+        m.vertices.extend(&inner.vertices);
+        m.triangles.extend(inner.triangles.iter().map(|t| [t[0] + 8, t[2] + 8, t[1] + 8]));
+        let shells = m.shells();
+        assert!((shells[0] - 27.0).abs() < 1e-12 && (shells[1] + 1.0).abs() < 1e-12, "{shells:?}");
     }
 
     #[test]

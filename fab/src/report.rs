@@ -4,6 +4,7 @@ use crate::check::Check;
 use crate::gap::Gap;
 use crate::ledger::Entry;
 use crate::mesh::{Closure, Mesh};
+use crate::mold::Kind;
 use crate::process::{Figure, Process};
 use crate::wall::Walls;
 use glam::DVec3;
@@ -45,7 +46,9 @@ impl Finding {
 pub struct ReadBack {
     pub volume_mm3: Option<f64>,
     pub watertight: Option<bool>,
+    /// Pieces of surface around material, and around hollows inside it.
     pub bodies: Option<usize>,
+    pub hollows: Option<usize>,
     pub genus: Option<i64>,
     pub triangles: Option<usize>,
     /// Bounding box, mm.
@@ -56,15 +59,22 @@ pub struct ReadBack {
 impl ReadBack {
     pub fn of(mesh: &Mesh) -> ReadBack {
         let (topology, (low, high)) = (mesh.topology(), mesh.bounds());
+        let bodies = mesh.shells().iter().filter(|v| **v > 0.0).count();
         ReadBack {
             volume_mm3: Some(mesh.volume()),
             watertight: Some(mesh.closure() == Closure::Closed),
-            bodies: Some(topology.bodies),
+            bodies: Some(bodies),
+            hollows: Some(topology.bodies - bodies),
             genus: Some(topology.genus),
             triangles: Some(mesh.triangles.len()),
             low: Some(low),
             high: Some(high),
         }
+    }
+
+    /// Pieces of surface in all: what a slicer counts as parts.
+    pub fn shells(&self) -> usize {
+        self.bodies.unwrap_or(0) + self.hollows.unwrap_or(0)
     }
 }
 
@@ -140,15 +150,25 @@ pub struct Report {
     pub parts: Vec<PartReport>,
     pub gaps: Vec<Gap>,
     pub pair_checks: Vec<PairCheck>,
-    /// Always empty so far; see `molds_note`.
-    pub molds: Vec<Mold>,
+    /// Pieces of molds; a package makes them.
+    pub molds: Vec<MoldFile>,
     pub molds_note: String,
     pub findings: Vec<Finding>,
 }
 
-/// A mold; none can be made yet, so there is no value of this type.
+/// A piece of a mold as written.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub enum Mold {}
+pub struct MoldFile {
+    /// The mold that it belongs to.
+    pub mold: String,
+    pub file: String,
+    pub kind: Kind,
+    /// How many to make.
+    pub copies: usize,
+    pub volume_mm3: f64,
+    pub watertight: bool,
+    pub checks: Vec<Check>,
+}
 
 impl Report {
     /// The gravest severity among the findings.

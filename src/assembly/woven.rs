@@ -126,6 +126,18 @@ fn rim(pieces: &[Piece]) -> Vec<bool> {
 }
 
 impl Woven {
+    /// The part's sites and those that they face.
+    pub fn near(&self, part: PartIx) -> impl Iterator<Item = Site> + '_ {
+        let (dx, dy) = self.shifts[part.at()];
+        let faced =
+            self.across[self.assembly.part(part).solid].iter().filter_map(|(_, across)| match across {
+                Across::Site(s) => Some(*s),
+                Across::Face(_) => None,
+            });
+        let faced = faced.map(move |s| Site { x: s.x + dx, y: s.y + dy, ..s });
+        faced.chain(tile::of_piece(&self.sites, self.pieces[part.at()]))
+    }
+
     /// For each facet of a part's solid: the part that it touches, if any.
     pub fn faced(&self, part: PartIx) -> impl Iterator<Item = Option<PartIx>> + '_ {
         let (dx, dy) = self.shifts[part.at()];

@@ -18,5 +18,5 @@ pub use merge::merge;
 pub use picture::sheet;
 pub use row::{AtPhase, Flexible, Release, Repeated, Row, Status, row};
 pub use run::{Progress, Written, write};
-pub use table::{Ask, FLEX_UP_TO, MOST, Phases, Settings, Shard, share};
+pub use table::{Ask, FLEX_UP_TO, MOST, Phases, Settings, Shard, cost, share};
 pub use weaves::{Abc, By, Equivalent, Which, equivalents, weaves};

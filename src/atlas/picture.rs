@@ -256,6 +256,6 @@ fn legend(y: f64, ask: &Ask) -> Vec<Mark> {
     marks.extend(hand(Some(Handedness::Achiral), MARGIN + 124.0, y + 54.0, INK));
     marks.push(text(MARGIN + 134.0, 2, "achiral unit tile.  The warp's tile is the weft's:  s  same, turned;  m  mirrored;  b  both;  d  different."));
     marks.push(frame(MARGIN, y + 67.0, 16.0));
-    marks.push(text(MARGIN + 24.0, 3, "the endless cloth is chiral (no frame: achiral or undecided).  No cell: it falls apart, or stands under an equivalent name."));
+    marks.push(text(MARGIN + 24.0, 3, "the endless weave is chiral (no frame: achiral or undecided).  No cell: it falls apart, or stands under an equivalent name."));
     marks
 }

@@ -91,7 +91,7 @@ pub struct Row {
     /// Other [a,b,c] of the same cloth, moved or mirrored; where the table has no rows of their own this row speaks of
     /// their family, and of their hands after the isometry named.
     pub equivalents: Vec<Equivalent>,
-    /// Hand of the weft's unit tile at phase 0, how the warp's follows, and the hand of the endless cloth of unit tiles;
+    /// Hand of the weft's unit tile at phase 0, how the warp's follows, and the hand of the endless weave, its strands uncut;
     /// null where a tile could not be cut (`note`).
     pub tile: Option<Handedness>,
     pub warp_is: Option<WarpIs>,

@@ -10,6 +10,7 @@
 
 pub mod cone;
 pub mod graph;
+pub mod ndbg;
 pub mod reach;
 pub mod sector;
 pub mod shadow;

@@ -49,6 +49,50 @@ pub struct SymmetryAnswer {
     /// Farthest distance of a corner of the solid from its partner under this map; null where one has no partner within
     /// the resolution.
     pub residual: Option<f64>,
+    /// `weave`: of the endless weave; `surroundings`: of the crossings that shape this piece alone.
+    pub reach: String,
+}
+
+/// Whether the search on the solids and the symmetries of the draft say the same.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Agreement {
+    Agree,
+    /// There is no draft.
+    SolidsAlone,
+    /// The solid has too few clear corners for the search; the draft's own symmetries meet on it.
+    DraftAlone,
+    Disagree,
+}
+
+/// A symmetry of the endless weave, up to its translations.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+pub struct ElementAnswer {
+    pub proper: bool,
+    /// Wefts become warps.
+    pub exchange: bool,
+    /// Over becomes under.
+    pub turned_over: bool,
+    /// The cuts of the unit tiles go to cuts.
+    pub keeps_cuts: bool,
+    pub map: String,
+}
+
+/// The symmetry group of the weave, from its draft and sites.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+pub struct GroupAnswer {
+    /// Translations [x, y] within the least rectangle, which is itself one.
+    pub translations: Vec<[i32; 2]>,
+    pub rectangle: [i32; 2],
+    pub elements: Vec<ElementAnswer>,
+}
+
+/// The endless weave, its strands uncut.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct ClothAnswer {
+    pub group: GroupAnswer,
+    #[serde(flatten)]
+    pub hand: HandAnswer,
 }
 
 /// What was found about the isometries from one shape to another (or itself), both ways.
@@ -58,6 +102,7 @@ pub struct Evidence {
     pub isometries: Vec<IsometryAnswer>,
     /// From the draft; null where there is none.
     pub draft: Option<Vec<SymmetryAnswer>>,
+    pub agreement: Agreement,
     /// Isometries that were tried on the solids.
     pub tried: usize,
     /// Points that meet within this distance count as met, from the rounding of vertices (for meshes from the user's
@@ -113,6 +158,60 @@ pub struct PairAnswer {
     pub evidence: Evidence,
 }
 
+/// How two parts that touch lie to each other.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Touch {
+    /// A weft and a warp.
+    Crossing,
+    /// Two of one kind side by side.
+    Beside,
+    /// Two of one strand.
+    EndToEnd,
+    /// Parts read from meshes.
+    Meshes,
+}
+
+/// Two parts that touch, taken as one shape (paper, figure 18).
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct NeighboursAnswer {
+    pub a: String,
+    pub b: String,
+    pub touch: Touch,
+    pub hand: Handedness,
+    pub agreement: Agreement,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub why: Option<String>,
+}
+
+/// Parts that are one shape up to motions and mirrors.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct ShapeAnswer {
+    pub hand: Handedness,
+    /// Parts that are the first of these, moved; all of them where the shape is achiral.
+    pub same: Vec<String>,
+    /// Parts that are its mirror image.
+    pub mirrored: Vec<String>,
+    /// Largest residual of the isometries that join them, model units.
+    pub residual: f64,
+}
+
+/// Whether a mold or drawing of each hand is needed for some shape.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum BothHands {
+    Needed,
+    NotNeeded,
+    Undecided,
+}
+
+/// Two sources that do not say the same, or a thing that could not be decided.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+pub struct FindingAnswer {
+    pub at: String,
+    pub what: String,
+}
+
 /// A part of the assembly and its hand.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct PartAnswer {
@@ -129,8 +228,17 @@ pub struct Hands {
     pub tile: Option<Handedness>,
     /// All warp tiles against all weft tiles at phase 0; null for an assembly of meshes.
     pub warp_is: Option<WarpIs>,
-    /// Null where only a weave was asked about.
+    /// Of the parts in place; where only a weave was asked about, of the endless weave, its strands
+    /// uncut.
     pub assembly: Option<Handedness>,
+    pub assembly_is: String,
+    /// Whether some tile (or part) occurs in both hands.
+    pub both_hands: Option<BothHands>,
+    /// The least favourable of all agreements told below.
+    pub agreement: Agreement,
+    pub findings: Vec<FindingAnswer>,
+    /// Null for an assembly of meshes.
+    pub cloth: Option<ClothAnswer>,
     /// The weavers' hand of a twill.
     pub twill: Option<crate::weave::Hand>,
     /// A tile for each orbit of strands under the draft's translations, wefts first.
@@ -140,6 +248,13 @@ pub struct Hands {
     pub other_phases: Vec<PairAnswer>,
     pub assembly_evidence: Option<HandAnswer>,
     pub parts: Vec<PartAnswer>,
+    /// Parts grouped by shape.
+    pub shapes: Vec<ShapeAnswer>,
+    /// Parts that touch, two by two.
+    pub neighbours: Vec<NeighboursAnswer>,
+    /// The mirrored assembly, where it was exported.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub twin: Option<super::twin::TwinAnswer>,
     pub convention: String,
     pub remarks: Vec<String>,
 }

@@ -3,32 +3,40 @@
 //! Not promised: tiles of other phases than 0 but for [`Cloth::other_phases`], which tries those that the draft allows.
 
 use super::answer::{HandAnswer, PairAnswer, TileAnswer, WarpIs};
-use super::draft::{Symmetry, Woven};
-use super::judge;
+use super::draft::{Near, Reach, Set, Symmetry, Woven};
+use super::judge::{self, Findings};
 use super::shape::{SPREAD, Scale, Shape};
 use crate::assembly::layout::first_cut;
 use crate::sites::{Coincident, Sites};
 use crate::solid::Solid;
 use crate::spec::ProfileSpec;
 use crate::tile::exact::{SITE_BITS, VERTEX_BITS};
-use crate::tile::{self, Lattice, Piece, TileError};
+use crate::tile::{self, Across, Lattice, Piece, Tile, TileError};
 use crate::weave::{Kind, Weave};
 use glam::DAffine3;
 use std::collections::BTreeSet;
 
 /// A weave ready to be cut.
 pub struct Cloth<'a> {
-    weave: &'a Weave,
-    profile: &'a ProfileSpec,
+    pub weave: &'a Weave,
+    pub profile: &'a ProfileSpec,
     sites: Sites,
-    lattice: Lattice,
+    pub lattice: Lattice,
 }
 
 /// A piece and its solid in place.
 pub struct Shaped {
     pub piece: Piece,
-    shape: Shape,
-    scale: Scale,
+    pub shape: Shape,
+    pub scale: Scale,
+    /// The sites that shape it.
+    pub near: Near,
+}
+
+impl Shaped {
+    pub fn set(&self) -> Set<'_> {
+        Set { pieces: std::slice::from_ref(&self.piece), near: &self.near }
+    }
 }
 
 impl<'a> Cloth<'a> {
@@ -57,25 +65,39 @@ impl<'a> Cloth<'a> {
 
     pub fn shaped(&self, pieces: &[Piece]) -> Result<Vec<Shaped>, TileError> {
         let tiles = tile::tiles(&self.sites, &self.lattice, pieces)?;
-        Ok(tiles.iter().map(|t| self.placed(t.piece, &t.solid, DAffine3::IDENTITY)).collect())
+        Ok(tiles.iter().map(|t| self.placed(t.piece, &t.solid, DAffine3::IDENTITY, self.near(t))).collect())
     }
 
-    pub fn placed(&self, piece: Piece, solid: &Solid, pose: DAffine3) -> Shaped {
+    /// A tile's sites and those that they face.
+    fn near(&self, tile: &Tile) -> Near {
+        let faced = tile.across.iter().filter_map(|(_, across)| match across {
+            Across::Site(s) => Some(*s),
+            Across::Face(_) => None,
+        });
+        faced.chain(tile::of_piece(&self.sites, tile.piece)).collect()
+    }
+
+    pub fn placed(&self, piece: Piece, solid: &Solid, pose: DAffine3, near: Near) -> Shaped {
         let scale = scale([solid], self.profile);
-        Shaped { piece, shape: Shape::new([(solid, pose)], scale), scale }
+        Shaped { piece, shape: Shape::new([(solid, pose)], scale), scale, near }
     }
 
     /// The symmetries of the weave that carry one set of pieces to another.
-    pub fn symmetries(&self, from: &[Piece], to: &[Piece]) -> Vec<Symmetry> {
+    pub fn symmetries(&self, from: Set, to: Set) -> Vec<(Symmetry, Reach)> {
+        self.woven().carry(from, to)
+    }
+
+    /// The weave as its symmetries see it.
+    pub fn woven(&self) -> Woven<'_> {
         let lift = (self.profile.lift * f64::from(1 << SITE_BITS)).round() as i64;
         // Half of a crossing's centreline is sampled from its cut; every site since then may be off by one unit, and one
         // more where heights are mirrored.
         let slack = i64::from(self.profile.samples) + 1;
-        Woven { draft: &self.weave.draft, sites: &self.sites, lift, slack }.carry(from, to)
+        Woven { draft: &self.weave.draft, sites: &self.sites, lift, slack }
     }
 
     pub fn hand(&self, tile: &Shaped) -> HandAnswer {
-        let symmetries = self.symmetries(&[tile.piece], &[tile.piece]);
+        let symmetries = self.symmetries(tile.set(), tile.set());
         judge::hand(&tile.shape, tile.scale, Some((&symmetries, self.profile.lift)))
     }
 
@@ -84,10 +106,14 @@ impl<'a> Cloth<'a> {
         TileAnswer { strand: strand.to_string(), from, to, hand: self.hand(tile) }
     }
 
+    /// The isometries from one tile to another.
+    pub fn compare(&self, from: &Shaped, to: &Shaped) -> Findings {
+        let symmetries = self.symmetries(from.set(), to.set());
+        judge::compare(&from.shape, &to.shape, to.scale, Some((&symmetries[..], self.profile.lift)))
+    }
+
     pub fn pair_answer(&self, weft: &Shaped, warp: &Shaped, phase: u32) -> PairAnswer {
-        let symmetries = self.symmetries(&[weft.piece], &[warp.piece]);
-        let drafted = Some((&symmetries[..], self.profile.lift));
-        let findings = judge::compare(&weft.shape, &warp.shape, warp.scale, drafted);
+        let findings = self.compare(weft, warp);
         let (warp_is, why) = findings.kinship();
         let [weft, warp] = [weft, warp].map(|s| s.piece.strand.to_string());
         PairAnswer { weft, warp, phase, warp_is, why, evidence: findings.evidence }
@@ -99,7 +125,10 @@ impl<'a> Cloth<'a> {
         for phase in 1..self.length(Kind::Warp) {
             let cut = warp.piece.moved((0, phase as i32));
             for weft in wefts {
-                if !self.symmetries(&[weft.piece], &[cut]).is_empty() {
+                // No tile but these can follow from the weft's by the weave; only then it is worth to be cut.
+                let none = Near::new();
+                let target = Set { pieces: &[cut], near: &none };
+                if self.symmetries(weft.set(), target).iter().any(|s| s.1 == Reach::Weave) {
                     let moved = self.shaped(&[cut])?;
                     answers.extend(moved.iter().map(|warp| self.pair_answer(weft, warp, phase)));
                 }

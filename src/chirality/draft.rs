@@ -1,11 +1,13 @@
 //! Takes a weave, its sites and pieces; gives the isometries of the weave that carry pieces to pieces.
 //!
-//! Complete for isometries that carry crossings to crossings of the whole, endless weave. Not promised: a symmetry that
-//! only the surroundings of one piece have; the geometry may find it, and then the two disagree.
+//! Complete for isometries that carry crossings to crossings, of the whole, endless weave or of the surroundings that
+//! shape the pieces alone: a Voronoi cell is made by its neighbours, so where a piece's sites and all that these face go to
+//! sites, there and back, the piece goes to the piece. Not promised: isometries that carry
+//! crossings elsewhere; the solids are searched for those.
 
-use crate::sites::Sites;
-use crate::tile::Piece;
+use crate::sites::{Site, Sites};
 use crate::tile::exact::Grid;
+use crate::tile::{Lattice, Piece};
 use crate::weave::{Draft, Kind, Strand};
 use std::collections::BTreeSet;
 
@@ -21,7 +23,41 @@ pub struct Symmetry {
     pub shift: [i32; 2],
 }
 
+/// Which part of the weave a symmetry keeps.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Reach {
+    Weave,
+    /// The sites that shape the pieces, but not the whole weave.
+    Surroundings,
+}
+
+/// The sites that shape pieces: their own, and those that these face.
+pub type Near = BTreeSet<Site>;
+
+/// Pieces with the sites that shape them.
+#[derive(Clone, Copy)]
+pub struct Set<'a> {
+    pub pieces: &'a [Piece],
+    pub near: &'a Near,
+}
+
 impl Symmetry {
+    /// Its inverse but for the shift.
+    fn back(&self) -> Symmetry {
+        let [u, v] = self.against;
+        Symmetry { against: if self.exchange { [v, u] } else { [u, v] }, shift: [0, 0], ..*self }
+    }
+
+    /// Whether these sites go to sites.
+    fn keeps_near(&self, woven: &Woven, near: &Near) -> bool {
+        near.iter().all(|&site| {
+            let (x, y) = self.square((site.x, site.y));
+            let image = self.point(woven.sites.at(site), woven.lift);
+            let meets = |p: Grid| (0..3).all(|d| (p[d] - image[d]).abs() <= woven.slack);
+            woven.sites.in_square(x, y).any(|other| meets(woven.sites.at(other)))
+        })
+    }
+
     /// Whether it is a motion: its linear part has determinant 1.
     pub fn is_proper(&self) -> bool {
         let turned = [self.exchange, self.against[0], self.against[1], self.upside_down];
@@ -146,17 +182,38 @@ impl Woven<'_> {
     }
 
     /// The symmetries that carry the pieces `from`, as a set, to the pieces `to`. Empty sets have none.
-    pub fn carry(&self, from: &[Piece], to: &[Piece]) -> Vec<Symmetry> {
-        let target: BTreeSet<Piece> = to.iter().copied().collect();
+    pub fn carry(&self, from: Set, to: Set) -> Vec<(Symmetry, Reach)> {
         let fits = |linear: Symmetry| {
-            let images: Vec<Piece> = from.iter().map(|p| linear.piece(p)).collect();
-            let (here, there) = (corner(&images)?, corner(to)?);
-            let shifted = Symmetry { shift: [there.0 - here.0, there.1 - here.1], ..linear };
-            let carried: BTreeSet<Piece> = from.iter().map(|p| shifted.piece(p)).collect();
-            (carried == target && self.keeps(&shifted)).then_some(shifted)
+            let there = shifted(linear, from.pieces, to.pieces)?;
+            if self.keeps(&there) {
+                return Some((there, Reach::Weave));
+            }
+            let back = shifted(linear.back(), to.pieces, from.pieces)?;
+            let near = there.keeps_near(self, from.near) && back.keeps_near(self, to.near);
+            near.then_some((there, Reach::Surroundings))
         };
         [false, true].into_iter().flat_map(Symmetry::linear).filter_map(fits).collect()
     }
+
+    /// The symmetries of the endless weave, one for each class under its translations.
+    pub fn group(&self, lattice: &Lattice) -> Vec<Symmetry> {
+        let (wide, high) = (self.draft.warps() as i32, self.draft.wefts() as i32);
+        let squares = (0..high).flat_map(|y| (0..wide).map(move |x| (x, y)));
+        let shifts: Vec<(i32, i32)> = squares.filter(|&s| lattice.canonical(s).0 == s).collect();
+        let all = [false, true].into_iter().flat_map(Symmetry::linear);
+        let moved =
+            all.flat_map(|linear| shifts.iter().map(move |&(x, y)| Symmetry { shift: [x, y], ..linear }));
+        moved.filter(|s| self.keeps(s)).collect()
+    }
+}
+
+/// The isometry with this linear part that carries the one set of pieces to the other, if one does.
+fn shifted(linear: Symmetry, from: &[Piece], to: &[Piece]) -> Option<Symmetry> {
+    let images: Vec<Piece> = from.iter().map(|p| linear.piece(p)).collect();
+    let (here, there) = (corner(&images)?, corner(to)?);
+    let shifted = Symmetry { shift: [there.0 - here.0, there.1 - here.1], ..linear };
+    let carried: BTreeSet<Piece> = from.iter().map(|p| shifted.piece(p)).collect();
+    (carried == to.iter().copied().collect()).then_some(shifted)
 }
 
 /// Least x and y of the pieces' unit squares.

@@ -66,6 +66,8 @@ fn try_map(a: &Shape, b: &Shape, map: DAffine3, search: &mut Search) {
     let Some(corners) = corner_residual(a, b, &map, search.within) else { return };
     match meets(a, b, &map, search.within) {
         Some(residual) => search.found.push(Found { map, residual }),
+        // Corners belong to the shape however its faces are divided: parts whose corners go to no one part differ.
+        None if a.parts.len() > 1 && !parts_meet(a, b, &map, search.within) => {}
         None => search.loose.push(Found { map, residual: corners }),
     }
 }
@@ -112,6 +114,22 @@ pub fn corner_residual(a: &Shape, b: &Shape, map: &DAffine3, within: f64) -> Opt
         })
     };
     Some(one(a, b, map)?.max(one(b, a, &map.inverse())?))
+}
+
+/// Whether the corners of every part go to points of one part, and that one's corners back.
+fn parts_meet(a: &Shape, b: &Shape, map: &DAffine3, within: f64) -> bool {
+    let back = map.inverse();
+    let inside = |from: &Shape, corners: &[u32], map: &DAffine3, to: &Shape, points: &[u32]| {
+        corners.iter().all(|&k| {
+            let image = map.transform_point3(from.point(k));
+            points.iter().any(|&id| to.point(id).distance(image) <= within)
+        })
+    };
+    a.members.iter().all(|[corners, points]| {
+        b.members
+            .iter()
+            .any(|[others, theirs]| inside(a, corners, map, b, theirs) && inside(b, others, &back, a, points))
+    })
 }
 
 /// Farthest distance of any point from its partner, when all have one and the parts of `a` become the parts of `b`.

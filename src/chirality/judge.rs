@@ -4,18 +4,20 @@
 //! one, its own map must meet the corners within the resolution of the sites; where it has none, the search on the
 //! solids must have found none, not even one that meets in corners alone.
 
-use super::answer::{Evidence, HandAnswer, Handedness, IsometryAnswer, Measure, SymmetryAnswer, WarpIs};
-use super::draft::Symmetry;
+use super::answer::{
+    Agreement, Evidence, HandAnswer, Handedness, IsometryAnswer, Measure, SymmetryAnswer, WarpIs,
+};
+use super::draft::{Reach, Symmetry};
 use super::isometry::{self, Found, Search, corner_residual};
 use super::moment::{self, PseudoScalar, Triangles};
 use super::shape::{Scale, Shape};
 use glam::{DAffine3, DMat3, DVec3};
 
 /// The draft's word: its symmetries, and the height of an over above an under.
-pub type Drafted<'a> = Option<(&'a [Symmetry], f64)>;
+pub type Drafted<'a> = Option<(&'a [(Symmetry, Reach)], f64)>;
 
 /// Whether isometries of one sense exist.
-enum Sense {
+pub enum Sense {
     Exists,
     Absent,
     Unclear(String),
@@ -32,20 +34,21 @@ pub struct Findings {
 pub fn compare(a: &Shape, b: &Shape, scale: Scale, drafted: Drafted) -> Findings {
     let search = isometry::search(a, b, scale.rounding);
     let draft = drafted.map(|(symmetries, lift)| {
-        let answer = |s: &Symmetry| SymmetryAnswer {
-            proper: s.is_proper(),
-            map: s.text(),
-            residual: corner_residual(a, b, &affine(s, lift), scale.resolution),
+        let answer = |(s, reach): &(Symmetry, Reach)| {
+            let residual = corner_residual(a, b, &affine(s, lift), scale.resolution);
+            symmetry_answer(s, *reach, residual)
         };
         symmetries.iter().map(answer).collect::<Vec<_>>()
     });
     let sense = |proper| sense(proper, search.as_ref(), draft.as_deref(), scale);
     let (is, is_not) = (sense(true), sense(false));
+    let agreement = agreement([&is, &is_not], search.is_some(), draft.is_some());
     let search = search.unwrap_or_default();
     let isometries = search.found.iter().map(isometry_answer).collect();
     let evidence = Evidence {
         isometries,
         draft,
+        agreement,
         tried: search.tried,
         within: search.within,
         resolution: scale.resolution,
@@ -53,17 +56,45 @@ pub fn compare(a: &Shape, b: &Shape, scale: Scale, drafted: Drafted) -> Findings
     Findings { evidence, proper: is, improper: is_not }
 }
 
-fn sense(proper: bool, search: Option<&Search>, draft: Option<&[SymmetryAnswer]>, scale: Scale) -> Sense {
+/// The draft's symmetry as it is told.
+pub fn symmetry_answer(s: &Symmetry, reach: Reach, residual: Option<f64>) -> SymmetryAnswer {
+    let reach = if reach == Reach::Weave { "weave" } else { "surroundings" };
+    SymmetryAnswer { proper: s.is_proper(), map: s.text(), residual, reach: reach.into() }
+}
+
+/// What the two sources are to each other; what is unclear with both at hand is a disagreement.
+pub fn agreement(senses: [&Sense; 2], searched: bool, drafted: bool) -> Agreement {
+    match (searched, drafted) {
+        (_, false) => Agreement::SolidsAlone,
+        (false, true) => Agreement::DraftAlone,
+        _ if senses.iter().any(|s| matches!(s, Sense::Unclear(_))) => Agreement::Disagree,
+        _ => Agreement::Agree,
+    }
+}
+
+pub fn sense(proper: bool, search: Option<&Search>, draft: Option<&[SymmetryAnswer]>, scale: Scale) -> Sense {
     let word = if proper { "proper" } else { "improper" };
     let some = |list: &[Found]| list.iter().any(|f| f.is_proper() == proper);
     let found = search.is_some_and(|s| some(&s.found));
+    let best = search.and_then(|s| {
+        s.found.iter().filter(|f| f.is_proper() == proper).map(|f| f.residual).reduce(f64::min)
+    });
     let loose = search.is_some_and(|s| some(&s.loose));
     let drafted = draft.map(|d| d.iter().filter(|s| s.proper == proper).collect::<Vec<_>>());
     match drafted.as_deref() {
         None | Some([]) if search.is_none() => {
             Sense::Unclear("the solid has too few clear corners to place it by".into())
         }
-        None if found => Sense::Exists,
+        // Without a draft the tolerance is the user's: within it points meet; within what errors of that size can add up
+        // to, nobody can tell; beyond they do not.
+        None if best.is_some_and(|r| r <= scale.rounding) => Sense::Exists,
+        None if found => Sense::Unclear(format!(
+            "under {word} isometries points miss by {:.3e}: more than the tolerance {:.3e}, less than {:.3e}, to which such \
+             errors can add up",
+            best.unwrap_or_default(),
+            scale.rounding,
+            search.map_or(0.0, |s| s.within)
+        )),
         None if loose => Sense::Unclear(format!(
             "under {word} isometries all corners meet, but the faces are divided otherwise"
         )),
@@ -107,12 +138,8 @@ pub fn hand(shape: &Shape, scale: Scale, drafted: Drafted) -> HandAnswer {
 const FACTORS: f64 = 4.0;
 
 /// The hand of a chiral shape: the sign of the first pseudo-scalar that is more than round-off.
-fn named(shape: &Shape, scale: Scale) -> (Handedness, Option<Measure>, Option<String>) {
-    let (volume, centroid) = moment::centroid(&shape.triangles);
-    // A boundary that is off by e changes an integral over the body by e times one over the boundary: relative to the
-    // body's about e area / volume.
-    let round_off = FACTORS * scale.rounding * area(&shape.triangles) / volume;
-    let scalars = moment::pseudo_scalars(&shape.triangles, centroid);
+pub fn named(shape: &Shape, scale: Scale) -> (Handedness, Option<Measure>, Option<String>) {
+    let (scalars, round_off) = scalars(shape, scale);
     let part = |p: &PseudoScalar| if p.size > 0.0 { p.value / p.size } else { 0.0 };
     let Some(p) = scalars.iter().find(|p| part(p).abs() > round_off) else {
         let why = "chiral, but the error of the points could turn the sign of every pseudo-scalar, so the hand has no \
@@ -124,11 +151,20 @@ fn named(shape: &Shape, scale: Scale) -> (Handedness, Option<Measure>, Option<St
     (hand, Some(Measure { integrand: p.name.into(), value: part(p), round_off }), None)
 }
 
+/// The pseudo-scalars of a shape, and how far each may be off, in its size.
+pub fn scalars(shape: &Shape, scale: Scale) -> ([PseudoScalar; 3], f64) {
+    let (volume, centroid) = moment::centroid(&shape.triangles);
+    // A boundary that is off by e changes an integral over the body by e times one over the boundary: relative to the
+    // body's about e area / volume.
+    let round_off = FACTORS * scale.rounding * area(&shape.triangles) / volume;
+    (moment::pseudo_scalars(&shape.triangles, centroid), round_off)
+}
+
 fn area(triangles: &Triangles) -> f64 {
     triangles.iter().map(|[a, b, c]| (b - a).cross(c - a).length() / 2.0).sum()
 }
 
-fn isometry_answer(found: &Found) -> IsometryAnswer {
+pub fn isometry_answer(found: &Found) -> IsometryAnswer {
     let rows = found.map.matrix3.transpose();
     IsometryAnswer {
         proper: found.is_proper(),
@@ -139,7 +175,7 @@ fn isometry_answer(found: &Found) -> IsometryAnswer {
 }
 
 /// A symmetry of the weave in space; an over at height `lift`, an under at 0.
-fn affine(s: &Symmetry, lift: f64) -> DAffine3 {
+pub fn affine(s: &Symmetry, lift: f64) -> DAffine3 {
     let sign = |against: bool| if against { -1.0 } else { 1.0 };
     let (u, v) = if s.exchange { (DVec3::Y, DVec3::X) } else { (DVec3::X, DVec3::Y) };
     let rows = [sign(s.against[0]) * u, sign(s.against[1]) * v, sign(s.upside_down) * DVec3::Z];

@@ -13,20 +13,23 @@
 pub mod answer;
 mod cloth;
 pub mod draft;
+mod fabric;
 pub mod isometry;
 mod judge;
+mod kin;
 mod moment;
+mod parts;
 mod shape;
+pub mod twin;
 
-use crate::assembly::Assembly;
 use crate::contact::{Joined, Origin};
 use crate::sites::Coincident;
-use crate::spec::{ProfileSpec, Spec, Subject, WovenSpec};
-use crate::tile::{Piece, TileError};
+use crate::spec::{ProfileSpec, Spec, Subject};
+use crate::tile::TileError;
 use crate::weave::{Draft, Family, Hand, Kind, Weave, family};
-use answer::{CONVENTION, HandAnswer, Handedness, Hands, PairAnswer, PartAnswer, TileAnswer, WarpIs};
+use answer::{Agreement, CONVENTION, FindingAnswer, Handedness, Hands, PairAnswer, TileAnswer, WarpIs};
 use cloth::{Cloth, Shaped};
-use shape::{Scale, Shape};
+use parts::Of;
 
 /// Why there are no tiles to look at.
 #[derive(Debug, thiserror::Error)]
@@ -37,7 +40,7 @@ pub enum HandsError {
     Tile(#[from] TileError),
 }
 
-/// The hands of the unit tiles of a weave.
+/// The hands of the unit tiles of a weave, and of the weave itself.
 pub fn of_weave(weave: &Weave, profile: &ProfileSpec) -> Result<Hands, HandsError> {
     let cloth = Cloth::new(weave, profile)?;
     let shaped = cloth.shaped(&cloth.units())?;
@@ -53,47 +56,72 @@ pub fn of_weave(weave: &Weave, profile: &ProfileSpec) -> Result<Hands, HandsErro
             other_phases.extend(cloth.other_phases(&wefts, warp)?);
         }
     }
-    let remarks = several(&tiles, wefts.len());
-    let twill = twill(&weave.draft);
+    let names: Vec<Vec<String>> = shaped.iter().map(|s| vec![s.piece.strand.to_string()]).collect();
+    let hands: Vec<Handedness> = tiles.iter().map(|t| t.hand.hand).collect();
+    let groups = kin::groups(&names, &hands, |i, j| cloth.compare(&shaped[i], &shaped[j]));
+    let whole = fabric::cloth(&cloth, &shaped)?;
+    let told = tiles.iter().map(|t| &t.hand.evidence).chain(strands.iter().map(|p| &p.evidence));
+    let told = told.chain(whole.iter().map(|c| &c.hand.evidence)).map(|e| e.agreement);
     Ok(Hands {
         tile: tiles.first().map(|t| t.hand.hand),
         warp_is: Some(warp_is),
-        twill,
+        assembly: whole.as_ref().map(|c| c.hand.hand),
+        assembly_is: "endless weave, strands uncut".into(),
+        both_hands: Some(groups.both_hands()),
+        agreement: told.fold(groups.agreement, Agreement::max),
+        findings: findings(&tiles, &strands, whole.as_ref()),
+        twill: twill(&weave.draft),
+        remarks: several(&tiles, wefts.len()),
+        shapes: groups.shapes,
+        cloth: whole,
         tiles,
         strands,
         other_phases,
-        remarks,
         ..empty()
     })
+}
+
+/// Whatever is undecided, with its place.
+fn findings(
+    tiles: &[TileAnswer],
+    strands: &[PairAnswer],
+    cloth: Option<&answer::ClothAnswer>,
+) -> Vec<FindingAnswer> {
+    let of_tiles = tiles.iter().map(|t| (format!("tile of {}", t.strand), &t.hand.why));
+    let of_pairs = strands.iter().map(|p| (format!("{} against {}", p.warp, p.weft), &p.why));
+    let of_cloth = cloth.map(|c| ("endless weave".to_string(), &c.hand.why));
+    let all = of_tiles.chain(of_pairs).chain(of_cloth);
+    all.filter_map(|(at, why)| Some(FindingAnswer { at, what: why.clone()? })).collect()
 }
 
 /// The hands of an assembly, `joined` from `spec`; of a woven one those of its weave's unit tiles too.
 pub fn of_assembly(spec: &Spec, joined: &Joined) -> Result<Hands, HandsError> {
     let assembly = &joined.assembly;
-    let name = assembly.name.clone();
-    match (&spec.subject, &joined.origin) {
-        (Subject::Woven(woven), Origin::Woven(built)) => {
-            let (whole, parts) = woven_hands(woven, assembly, &built.pieces)?;
-            let hands = of_weave(&woven.weave, &woven.profile)?;
-            Ok(Hands { name, assembly: Some(whole.hand), assembly_evidence: Some(whole), parts, ..hands })
-        }
-        (Subject::Meshes(meshes), _) => {
-            let tolerance = meshes.tolerance_mm / meshes.mm_per_unit;
-            let scale = Scale { rounding: tolerance, resolution: tolerance };
-            let whole = judge::hand(&whole(assembly, scale), scale, None);
-            let alone = |k: usize| {
-                judge::hand(
-                    &Shape::new([(&assembly.solids[k], glam::DAffine3::IDENTITY)], scale),
-                    scale,
-                    None,
-                )
-            };
-            let solids: Vec<Handedness> = (0..assembly.solids.len()).map(|k| alone(k).hand).collect();
-            let parts = parts(assembly, &solids);
-            Ok(Hands { name, assembly: Some(whole.hand), assembly_evidence: Some(whole), parts, ..empty() })
-        }
-        (Subject::Woven(_), Origin::Meshes) => Ok(Hands { name, ..empty() }),
-    }
+    let of = match (&spec.subject, &joined.origin) {
+        (Subject::Woven(woven), Origin::Woven(built)) => parts::of_woven(woven, built, &joined.patches)?,
+        (Subject::Meshes(meshes), _) => parts::of_meshes(meshes, assembly, &joined.patches),
+        (Subject::Woven(_), Origin::Meshes) => return Ok(Hands { name: assembly.name.clone(), ..empty() }),
+    };
+    let weave = match &spec.subject {
+        Subject::Woven(woven) => of_weave(&woven.weave, &woven.profile)?,
+        Subject::Meshes(_) => empty(),
+    };
+    let Of { whole, parts, shapes, both_hands, neighbours, agreement, findings } = of;
+    // Of a woven assembly the unit tiles are told beside; for meshes there is nothing beside.
+    let agreement = if weave.tiles.is_empty() { agreement } else { agreement.max(weave.agreement) };
+    Ok(Hands {
+        name: assembly.name.clone(),
+        assembly: Some(whole.hand),
+        assembly_is: "parts in place".into(),
+        both_hands: Some(both_hands),
+        agreement,
+        findings: findings.into_iter().chain(weave.findings.iter().cloned()).collect(),
+        assembly_evidence: Some(whole),
+        parts,
+        shapes,
+        neighbours,
+        ..weave
+    })
 }
 
 fn empty() -> Hands {
@@ -103,43 +131,23 @@ fn empty() -> Hands {
         tile: None,
         warp_is: None,
         assembly: None,
+        assembly_is: String::new(),
+        both_hands: None,
+        agreement: Agreement::SolidsAlone,
+        findings: Vec::new(),
+        cloth: None,
         twill: None,
         tiles: Vec::new(),
         strands: Vec::new(),
         other_phases: Vec::new(),
         assembly_evidence: None,
         parts: Vec::new(),
+        shapes: Vec::new(),
+        neighbours: Vec::new(),
+        twin: None,
         convention: CONVENTION.into(),
         remarks: Vec::new(),
     }
-}
-
-fn woven_hands(
-    woven: &WovenSpec,
-    assembly: &Assembly,
-    pieces: &[Piece],
-) -> Result<(HandAnswer, Vec<PartAnswer>), Coincident> {
-    let cloth = Cloth::new(&woven.weave, &woven.profile)?;
-    let scale = cloth::scale(&assembly.solids, &woven.profile);
-    let symmetries = cloth.symmetries(pieces, pieces);
-    let whole = judge::hand(&whole(assembly, scale), scale, Some((&symmetries, woven.profile.lift)));
-    // Parts of one solid are translates of each other: any of them stands for all.
-    let one = |k: usize| assembly.parts.iter().zip(pieces).find(|(part, _)| part.solid == k);
-    let hand = |k: usize| {
-        one(k).map(|(part, &piece)| cloth.hand(&cloth.placed(piece, &assembly.solids[k], part.pose)).hand)
-    };
-    let solids: Vec<Handedness> =
-        (0..assembly.solids.len()).map(|k| hand(k).unwrap_or(Handedness::Undecided)).collect();
-    Ok((whole, parts(assembly, &solids)))
-}
-
-fn whole(assembly: &Assembly, scale: Scale) -> Shape {
-    Shape::new(assembly.parts.iter().map(|p| (&assembly.solids[p.solid], p.pose)), scale)
-}
-
-fn parts(assembly: &Assembly, solids: &[Handedness]) -> Vec<PartAnswer> {
-    let answer = |p: &crate::assembly::Part| PartAnswer { id: p.id.clone(), hand: solids[p.solid] };
-    assembly.parts.iter().map(answer).collect()
 }
 
 fn twill(draft: &Draft) -> Option<Hand> {

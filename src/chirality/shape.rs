@@ -32,6 +32,8 @@ pub struct Shape {
     pub surface: Vec<u32>,
     /// Where at least three facets of a part meet at clear angles; every isometric shape has vertices there.
     pub corners: Vec<u32>,
+    /// For each part its corners and the points of its boundary, both sorted.
+    pub members: Vec<[Vec<u32>; 2]>,
     /// Each part's convex cells or, where it has none, its flat faces; sorted.
     pub parts: Vec<Vec<Body>>,
     pub triangles: Vec<[DVec3; 3]>,
@@ -43,6 +45,7 @@ impl Shape {
             cloud: Cloud::new(scale),
             surface: Vec::new(),
             corners: Vec::new(),
+            members: Vec::new(),
             parts: Vec::new(),
             triangles: Vec::new(),
         };
@@ -61,8 +64,16 @@ impl Shape {
         let placed: Vec<DVec3> = solid.vertices.iter().map(|&v| pose.transform_point3(v)).collect();
         let ids: Vec<u32> = placed.iter().map(|&p| self.cloud.insert(p)).collect();
         self.triangles.extend(solid.triangles().map(|t| t.map(|k| placed[k as usize])));
-        self.surface.extend(solid.facets.iter().flat_map(|f| &f.corners).map(|&k| ids[k as usize]));
-        self.corners.extend(corners(solid).into_iter().map(|k| ids[k as usize]));
+        let mut surface: Vec<u32> =
+            solid.facets.iter().flat_map(|f| &f.corners).map(|&k| ids[k as usize]).collect();
+        let mut corners: Vec<u32> = corners(solid).into_iter().map(|k| ids[k as usize]).collect();
+        for list in [&mut surface, &mut corners] {
+            list.sort_unstable();
+            list.dedup();
+        }
+        self.surface.extend(&surface);
+        self.corners.extend(&corners);
+        self.members.push([corners, surface]);
         let bodies = if solid.cells.is_empty() { faces(solid, &ids) } else { self.cells(solid, pose) };
         self.parts.push(sorted(bodies));
     }

@@ -64,14 +64,19 @@ pub enum Verb {
         #[arg(long, value_name = "LENGTH", value_parser = length)]
         clearance: Option<f64>,
     },
+    /// Which part stops which: along a direction, or over all of them: `weavelock blocking roof.toml --sphere roof.svg`
+    Blocking(super::blocking::Blocking),
     /// Does it need flexible parts? The fewest, all such sets, and the bound's proof: `weavelock flex plain.toml`
     Flex(super::flex::Asked),
     /// The smallest repetition of the unit tile that locks: `weavelock repeats [2,2,1] --swatch n,2n --phases all`
     Repeats(Box<super::repeats::Asked>),
-    /// Hands of the tile, of weft against warp, and of the assembly: `weavelock chirality [4,1,2]`
+    /// Hands of the tile, of weft against warp, and of the assembly: `weavelock chirality plain.toml --export hands`
     Chirality {
         #[arg(allow_hyphen_values = true, value_name = "FILE|[a,b,c]")]
         subject: String,
+        /// Write the assembly and its mirror image as specs and meshes, read them back and compare them
+        #[arg(long, value_name = "DIR")]
+        export: Option<PathBuf>,
     },
     /// The weave itself: drawing, period, floats, family, does it hang together: `weavelock weave [7,1,3]`
     Weave {

@@ -116,7 +116,7 @@ fn chapter(written: &Written) -> Chapter {
     };
     let table = Table {
         caption: "Swatch n x n; - none found, ? undecided. Release clearance: not run".into(),
-        head: ["weave", "family", "tile", "warp is", "cloth", "least k by phase", "flexible"]
+        head: ["weave", "family", "tile", "warp is", "weave's", "least k by phase", "flexible"]
             .map(Column::words)
             .to_vec(),
         rows: written.rows.iter().map(row).collect(),

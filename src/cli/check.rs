@@ -2,9 +2,11 @@
 //!
 //! Not promised: any finding of its own; `locking` and `sampling` find.
 
+use super::interlock::told as told_interlock;
 use super::load::Placed;
 use super::questions;
 use super::told::{News, Told, Trouble};
+use crate::interlock;
 use crate::locking::{self, Check, Verdict};
 use crate::report::answer::{self, CheckAnswer};
 use crate::report::content::{Chapter, Column, Table};
@@ -14,18 +16,22 @@ use crate::sampling::{Beyond, Refined, Standing, refined};
 pub fn check(placed: &Placed, fix: Option<&str>, refine: bool) -> Result<Told, Trouble> {
     let joined = &placed.joined;
     let fix = fix.map(|id| questions::part(joined, id)).transpose()?;
-    let check = locking::check(&joined.assembly, &joined.patches, fix);
+    let check = locking::check_loose(&joined.assembly, &joined.patches, &joined.loose, fix);
     let levels = refine.then(|| refined(&placed.spec)).transpose()?;
     Ok(told(placed, &check, levels))
 }
 
 pub fn told(placed: &Placed, check: &Check, levels: Option<Refined>) -> Told {
     let mut answer = answer::check(&placed.joined, check, placed.source.clone());
+    let asm = &placed.joined.assembly;
+    let found = interlock::interlock(asm, &placed.joined.patches, check);
+    answer = answer::with_interlock(answer, answer::interlock(asm, check, &found));
     if let Some(levels) = levels {
         answer = answer::refined(answer, levels);
     }
     let news = News::of(matches!(check.rigid, Verdict::Locked(_)));
-    let chapter = with_sampling(chapters::verdict(&placed.joined.assembly, check), &answer);
+    let mut chapter = with_sampling(chapters::verdict(&placed.joined.assembly, check), &answer);
+    chapter.facts.extend(answer.interlock.iter().flat_map(told_interlock));
     Told {
         remarks: answer.remarks.clone(),
         ..Told::new(news, &answer, &answer.name, "Does it lock?", chapter)
@@ -36,8 +42,8 @@ pub fn told(placed: &Placed, check: &Check, levels: Option<Refined>) -> Told {
 fn with_sampling(mut chapter: Chapter, a: &CheckAnswer) -> Chapter {
     let mut fact = |name: &str, value: String| chapter.facts.push((name.into(), value));
     fact("margin", margin(&a.sampling.rigid));
-    if a.sampling.chord_error > 0.0 {
-        let error = chapters::scientific(a.sampling.chord_error);
+    if let Some(error) = a.sampling.chord_error.filter(|e| *e > 0.0) {
+        let error = chapters::scientific(error);
         fact("facets' own error", format!("{error} rad at most, against the true curved surfaces"));
     }
     fact("beyond the samples", beyond(a.sampling.rigid.beyond_sampling, &a.sampling.rigid.beyond_why));
@@ -54,7 +60,7 @@ fn beyond(word: Beyond, why: &str) -> String {
 }
 
 fn margin(s: &Standing) -> String {
-    let Some(m) = &s.margin else { return "none: nothing was decided".into() };
+    let Some(m) = &s.margin else { return "not computed".into() };
     let lower = m.lower.map_or("lower bound not computed".into(), |l| {
         format!("every normal may be turned by {} rad (proven)", chapters::scientific(l))
     });
@@ -72,7 +78,7 @@ fn levels(refine: &Refined) -> Table {
             l.translation.clone(),
             chapters::thousands(l.rows),
             margin,
-            chapters::scientific(l.chord_error),
+            l.chord_error.map_or("-".into(), chapters::scientific),
             word.into(),
         ]
     };

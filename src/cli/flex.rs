@@ -25,7 +25,7 @@ pub struct Asked {
     /// Also list larger sets from which no part can be left out
     #[arg(long)]
     pub minimal: bool,
-    /// Locks and plans that may be tried, each counted as its number of parts squared
+    /// Locks and plans that may be tried, each counted as its parts squared and its contact patches
     #[arg(long, value_name = "N", default_value_t = WORK)]
     pub work: u64,
     /// Stop after this long, as "60 s"; what is found then depends on the machine (--work does not)
@@ -148,8 +148,8 @@ fn words(a: &FlexAnswer) -> Vec<String> {
     }
     if !a.unproven.is_empty() {
         words.push(format!(
-            "{} sets came apart by no plan that was looked for, and are not proven locked: straight moves of parts and \
-             groups were tried, turns and moves in stages were not.",
+            "Sets that no plan took apart though they are not proven locked: {}. Straight moves of parts and groups were \
+             tried, turns and moves in stages were not.",
             a.unproven.len()
         ));
     }
@@ -179,7 +179,10 @@ fn facts(a: &FlexAnswer) -> Vec<(String, String)> {
     }
     facts.push(fact("symmetries", format!("{} isometries carry the assembly to itself", a.symmetries.len())));
     facts.push(fact("locked cores", a.cores.len().to_string()));
-    facts.push(fact("work", format!("{} (parts squared, over all locks and plans tried)", a.work)));
+    facts.push(fact(
+        "work",
+        format!("{} (parts squared and contacts, over all locks and plans tried)", a.work),
+    ));
     facts
 }
 

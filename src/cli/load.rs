@@ -51,7 +51,7 @@ impl Loaded {
 
 impl Placed {
     pub fn check(&self) -> Check {
-        locking::check(&self.joined.assembly, &self.joined.patches, None)
+        locking::check_loose(&self.joined.assembly, &self.joined.patches, &self.joined.loose, None)
     }
 }
 

@@ -4,8 +4,11 @@
 
 pub mod args;
 pub mod atlas;
+mod blocking;
 mod check;
 pub mod flex;
+mod hands;
+mod interlock;
 mod load;
 mod make;
 mod package;
@@ -53,9 +56,10 @@ fn dispatch(args: &Args) -> Result<Told, Trouble> {
         Some(Verb::Plan { file, of, clearance }) => {
             questions::plan(&load::spec(file)?.joined()?, of, clearance.unwrap_or(0.0))
         }
+        Some(Verb::Blocking(asked)) => blocking::blocking(&load::spec(&asked.file)?.joined()?, asked),
         Some(Verb::Flex(asked)) => flex::flex(asked),
         Some(Verb::Repeats(asked)) => repeats::repeats(asked),
-        Some(Verb::Chirality { subject }) => questions::chirality(subject),
+        Some(Verb::Chirality { subject, export }) => hands::chirality(subject, export.as_deref()),
         Some(Verb::Weave { subject, svg, wif }) => questions::weave(subject, svg.as_deref(), wif.as_deref()),
         Some(Verb::Fab(asked)) => package::fab(&load::spec(&asked.file)?.joined()?, asked, &args.common),
         Some(Verb::Processes { name }) => package::processes(name.as_deref()),

@@ -8,10 +8,10 @@ use crate::solid::{Facet, Solid};
 use glam::DVec3;
 use std::sync::Arc;
 use weavelock_fab::mesh;
-use weavelock_fab::package::{Attachment, Shown};
+use weavelock_fab::package::{Attachment, Shown, ShownPlate};
 
 /// Pixels: wide enough for a sheet on a screen or half a page of paper.
-const SIZE: (u32, u32) = (1200, 900);
+const SIZE: (u32, u32) = (960, 720);
 
 /// How far parts move apart, in their distance from the middle.
 const APART: DVec3 = DVec3::new(1.3, 1.3, 0.6);
@@ -29,8 +29,8 @@ pub fn draw(shown: &Shown) -> Result<Vec<Attachment>, String> {
         ("pictures/assembly.png".to_string(), parts.clone()),
         ("pictures/apart.png".into(), parts.exploded(APART)),
     ];
-    for (name, bed, stands) in &shown.plates {
-        let stem = name.trim_start_matches("print/").trim_end_matches(".mm.3mf");
+    for ShownPlate { file, bed, stands } in &shown.plates {
+        let stem = file.trim_start_matches("print/").trim_end_matches(".mm.3mf");
         let mut items = items(stands);
         items.insert(0, plate(*bed));
         all.push((format!("pictures/{stem}.png"), scene(items)));

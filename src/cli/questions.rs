@@ -6,11 +6,6 @@ use super::load::{self, Placed};
 use super::told::{News, Told, Trouble};
 use super::words;
 use crate::assembly::PartIx;
-use crate::atlas;
-use crate::chirality::{
-    self,
-    answer::{Handedness, Hands, WarpIs},
-};
 use crate::contact::Joined;
 use crate::fault::Fault;
 use crate::input;
@@ -134,35 +129,4 @@ pub fn verify(file: &Path) -> Result<Told, Trouble> {
     let verified = verify::answer(&sealed)?;
     let chapter = words::verified(&verified);
     Ok(Told::new(News::of(verified.valid), &verified, &file.display().to_string(), "Verify", chapter))
-}
-
-pub fn chirality(subject: &str) -> Result<Told, Trouble> {
-    let path = Path::new(subject);
-    if load::is_spec(path) {
-        return told_chirality(&load::spec(path)?.joined()?);
-    }
-    let weave = load::weave(subject)?;
-    let remarks = load::falls_apart(&weave);
-    let hands = chirality::of_weave(&weave, &atlas::Settings::default().profile()).map_err(hands_fault)?;
-    let mut told = told_hands(&Hands { name: subject.into(), ..hands });
-    told.remarks.extend(remarks);
-    Ok(told)
-}
-
-pub fn told_chirality(placed: &Placed) -> Result<Told, Trouble> {
-    let hands = chirality::of_assembly(&placed.spec, &placed.joined).map_err(hands_fault)?;
-    Ok(told_hands(&hands))
-}
-
-fn hands_fault(e: chirality::HandsError) -> Trouble {
-    argument(e.to_string(), "change rise, lift, cover or samples".into()).into()
-}
-
-fn told_hands(hands: &Hands) -> Told {
-    let undecided = [hands.tile, hands.assembly].contains(&Some(Handedness::Undecided));
-    let news = News::of(!undecided && hands.warp_is != Some(WarpIs::Undecided));
-    Told {
-        remarks: hands.remarks.clone(),
-        ..Told::new(news, hands, &hands.name, "Hands", words::hands(hands))
-    }
 }

@@ -11,8 +11,12 @@ pub fn chapter(a: &RepeatsAnswer) -> Chapter {
     let (tone, headline) = headline(a);
     let made = a.table.iter().any(|r| r.as_made.is_some());
     let mut tables = vec![cases(&a.cases), swatches(&a.table, made)];
-    if a.cases.len() < 2 && a.cases.iter().all(|c| c.phases.len() < 2) {
-        tables.remove(0);
+    let profiles = a.cases.iter().any(|c| c.profile != a.cases[0].profile);
+    match (profiles, a.cases.len() > 1 || a.cases.iter().any(|c| c.phases.len() > 1)) {
+        // The table of swatches names no profile: JSON has all rows.
+        (true, _) => drop(tables.pop()),
+        (false, true) => {}
+        (false, false) => drop(tables.remove(0)),
     }
     if !a.every_size.is_empty() {
         tables.push(classes(&a.every_size));
@@ -151,6 +155,7 @@ fn classes(all: &[ClassAnswer]) -> Table {
             c.base.k.to_string(),
             c.base.phase.to_string(),
             c.holds.clone(),
+            c.uncrossed.as_ref().map_or(String::new(), |s| format!("nothing crosses {s}")),
         ]
     };
     Table {
@@ -161,6 +166,7 @@ fn classes(all: &[ClassAnswer]) -> Table {
             Column::numbers("k"),
             Column::numbers("phase"),
             Column::words("all of them"),
+            Column::words(""),
         ],
         rows: all.iter().map(row).collect(),
     }

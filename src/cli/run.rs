@@ -5,6 +5,7 @@
 use super::args::Common;
 use super::check;
 use super::flex;
+use super::hands;
 use super::load::{self, Loaded, Placed};
 use super::make;
 use super::questions;
@@ -110,7 +111,7 @@ fn woven(placed: &Placed, progress: &impl Fn(&str)) -> Result<Woven, Trouble> {
     let search = Search { wefts: n.1, warps: n.0, phases: vec![phase], most: MOST_REPEATS };
     let repeats = repeats::repeated(&woven.weave, &name(&woven.weave), &woven.profile, &search);
     let repeats = repeats.map(|a| repeats::told(&a)).map_err(|t| t.to_string());
-    let chirality = questions::told_chirality(placed).map_err(|t| t.to_string());
+    let chirality = hands::told_chirality(placed).map_err(|t| t.to_string());
     Ok((Some(weave), repeats, chirality))
 }
 

@@ -5,7 +5,10 @@
 use super::atlas::AtlasAnswer;
 use super::told::{News, Told, Trouble};
 use crate::chirality::answer::Hands;
-use crate::report::answer::{CheckAnswer, FlexAnswer, PlanAnswer, RepeatsAnswer, WeaveAnswer};
+use crate::report::answer::fab::{FabAnswer, ProcessesAnswer};
+use crate::report::answer::{
+    BlockingAnswer, CheckAnswer, FlexAnswer, PlanAnswer, RepeatsAnswer, WeaveAnswer,
+};
 use crate::report::content::{Chapter, Tone};
 use crate::spec::shape::SpecFile;
 use crate::verify::Verified;
@@ -17,12 +20,15 @@ pub fn schema() -> Result<Told, Trouble> {
         ("spec", schema_for!(SpecFile)),
         ("check", schema_for!(CheckAnswer)),
         ("plan", schema_for!(PlanAnswer)),
+        ("blocking", schema_for!(BlockingAnswer)),
         ("flex", schema_for!(FlexAnswer)),
         ("repeats", schema_for!(RepeatsAnswer)),
         ("weave", schema_for!(WeaveAnswer)),
         ("chirality", schema_for!(Hands)),
         ("atlas", schema_for!(AtlasAnswer)),
         ("verify", schema_for!(Verified)),
+        ("fab", schema_for!(FabAnswer)),
+        ("processes", schema_for!(ProcessesAnswer)),
     ]);
     let pretty = serde_json::to_string_pretty(&all).unwrap_or_default();
     let figure = pretty.lines().map(str::to_string).collect();

@@ -1,8 +1,8 @@
 //! Takes a woven assembly and its patches; gives how far each facet is from the true surface, and contacts on that.
 //!
 //! The true surface between two strands is where the distances to their centrelines are equal (paper, section 3); a
-//! facet is the plane between two sites of theirs. Errors are the largest over a facet's corners and middle: measured
-//! there, not bounded between. Contacts on the true surface are few of many: safe for locked, silent about free.
+//! facet is the plane between two sites of theirs. Errors are the largest over a facet's middle and points just short of
+//! its corners (at corners the true surface may have a ridge, and two normals): measured there, not bounded between. Contacts on the true surface are few of many: safe for locked, silent about free.
 
 use super::Patch;
 use super::curve::Curves;
@@ -25,9 +25,12 @@ pub struct ChordError {
 const NONE: ChordError = ChordError { angle: 0.0, distance: 0.0 };
 const UNKNOWN: ChordError = ChordError { angle: std::f64::consts::PI, distance: f64::INFINITY };
 
-/// A facet on a cut is exact; its numbers are right to far better than this (grid steps are 2^-20, so a cut that is not
-/// where it should be is off by 1e-6 at least).
-const ON_A_CUT: f64 = 1e-9;
+/// How far a facet on a cut may be from it, as a distance and an angle: sites are rounded by up to 2^-20 of a crossing,
+/// and the two beside a cut may be a 64th apart. What it is off by counts as its error.
+const ON_A_CUT: f64 = 1.3e-4;
+
+/// Errors below this are round-off: of Newton's method, and of normals.
+const ROUND_OFF: f64 = 1e-11;
 
 /// Steps of Newton's method onto the true surface; its gradient is known, and points start near.
 const STEPS: usize = 8;
@@ -66,15 +69,22 @@ pub fn largest(errors: &[ChordError]) -> ChordError {
 
 fn error(woven: &Woven, curves: &Curves, patch: &Patch) -> ChordError {
     let pieces = pieces(woven, patch);
-    if pieces[0].strand == pieces[1].strand && on_the_cut(curves, pieces, patch) {
-        return NONE;
+    if let Some(error) = on_the_cut(curves, pieces, patch) {
+        return error;
     }
     let of = |p: DVec3| {
         let Some(t) = surface(curves, pieces, p) else { return UNKNOWN };
-        ChordError { angle: t.normal.angle_between(patch.normal), distance: t.at.distance(p) }
+        let told = |v: f64| if v > ROUND_OFF { v } else { 0.0 };
+        ChordError { angle: told(t.normal.angle_between(patch.normal)), distance: told(t.at.distance(p)) }
     };
-    let all: Vec<ChordError> = patch.corners.iter().copied().chain([middle(patch)]).map(of).collect();
+    let all: Vec<ChordError> = inner(patch).map(of).collect();
     largest(&all)
+}
+
+/// The middle, and points short of the corners.
+fn inner(patch: &Patch) -> impl Iterator<Item = DVec3> + '_ {
+    let middle = middle(patch);
+    patch.corners.iter().map(move |c| middle + (c - middle) * SHORT_OF_CORNERS).chain([middle])
 }
 
 fn pieces<'w>(woven: &'w Woven, patch: &Patch) -> [&'w Piece; 2] {
@@ -85,12 +95,16 @@ fn middle(patch: &Patch) -> DVec3 {
     patch.corners.iter().sum::<DVec3>() / patch.corners.len().max(1) as f64
 }
 
-/// Whether the facet lies in the plane across the strand at the cut between these pieces.
-fn on_the_cut(curves: &Curves, [a, b]: [&Piece; 2], patch: &Patch) -> bool {
+/// The error of a facet that lies across a strand at the cut between these pieces; none where it does not.
+fn on_the_cut(curves: &Curves, [a, b]: [&Piece; 2], patch: &Patch) -> Option<ChordError> {
+    if a.strand != b.strand {
+        return None;
+    }
     let at = if a.to == b.from { a.to } else { a.from };
     let (cut, along) = curves.cut(a.strand, at);
-    along.cross(patch.normal).length() < ON_A_CUT
-        && patch.corners.iter().all(|c| (c - cut).dot(patch.normal).abs() < ON_A_CUT)
+    let angle = along.cross(patch.normal).length();
+    let distance = patch.corners.iter().map(|c| (c - cut).dot(patch.normal).abs()).fold(0.0, f64::max);
+    (angle < ON_A_CUT && distance < ON_A_CUT).then(|| ChordError { angle: angle.min(1.0).asin(), distance })
 }
 
 /// The point of the true surface nearest to p, as good as; none where the centrelines are not told apart.
@@ -114,24 +128,28 @@ fn surface(curves: &Curves, [a, b]: [&Piece; 2], p: DVec3) -> Option<True> {
     None
 }
 
-/// Contacts on the true surface: for each patch the points near its middle and short of its corners that are nearer to
-/// both its strands than to anything else.
+/// Contacts on the true surface: for each patch the points near its middle and corners that are nearer to both its
+/// strands than to anything else.
 pub fn true_contacts(woven: &Woven, patches: &[Patch]) -> Vec<Patch> {
     let curves = Curves::new(&woven.weave, &woven.profile);
-    let of = |q: &Patch| -> Vec<Patch> {
-        let middle = middle(q);
-        let short = q.corners.iter().map(|c| middle + (c - middle) * SHORT_OF_CORNERS);
-        let all = short.chain([middle]).filter_map(|p| contact(woven, &curves, q, p));
-        all.collect()
-    };
+    let of = |q: &Patch| -> Vec<Patch> { inner(q).filter_map(|p| contact(woven, &curves, q, p)).collect() };
     patches.par_iter().flat_map_iter(of).collect()
 }
 
 fn contact(woven: &Woven, curves: &Curves, patch: &Patch, p: DVec3) -> Option<Patch> {
     let pieces = pieces(woven, patch);
     if pieces[0].strand == pieces[1].strand {
-        let exact = on_the_cut(curves, pieces, patch) && owned(woven, curves, pieces, p, None);
-        return exact.then(|| Patch { corners: vec![p], ..patch.clone() });
+        // A cut's true normal runs along the strand; only cuts are looked at.
+        on_the_cut(curves, pieces, patch)?;
+        let at = if pieces[0].to == pieces[1].from { pieces[0].to } else { pieces[0].from };
+        let (cut, along) = curves.cut(pieces[0].strand, at);
+        let normal = if along.dot(patch.normal) < 0.0 { -along } else { along };
+        let on = p - normal * (p - cut).dot(normal);
+        return owned(woven, curves, pieces, on, None).then(|| Patch {
+            normal,
+            corners: vec![on],
+            ..patch.clone()
+        });
     }
     let t = surface(curves, pieces, p)?;
     owned(woven, curves, pieces, t.at, Some(t.distance)).then(|| Patch {
@@ -155,7 +173,7 @@ fn owned(woven: &Woven, curves: &Curves, pieces: [&Piece; 2], p: DVec3, distance
     }
     if distance.is_none() {
         let at = if pieces[0].to == pieces[1].from { pieces[0].to } else { pieces[0].from };
-        if own.at.distance(curves.cut(pieces[0].strand, at).0) > ON_A_CUT {
+        if own.at.distance(curves.cut(pieces[0].strand, at).0) > ROUND_OFF {
             return false;
         }
     }

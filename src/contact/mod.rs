@@ -24,10 +24,26 @@ pub struct Patch {
     pub corners: Vec<DVec3>,
 }
 
+/// A place where two convex corners or edges touch and many planes lie between them: no row, but a motion must keep one
+/// of the planes. One point, or the two ends of a stretch.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Loose {
+    pub a: PartIx,
+    pub b: PartIx,
+    pub corners: Vec<DVec3>,
+    /// Unit normals from `a` to `b`; those of all the planes are combinations of them.
+    pub normals: Vec<DVec3>,
+}
+
 /// Parts in place, and where they touch.
 pub struct Joined {
     pub assembly: Assembly,
     pub patches: Vec<Patch>,
+    /// By how much each patch's normal may be off as far as the files tell, in radians; empty where contacts are
+    /// known by identity.
+    pub known: Vec<f64>,
+    /// Contacts without a unique normal.
+    pub loose: Vec<Loose>,
     pub origin: Origin,
     /// What was taken in good faith, in words.
     pub remarks: Vec<String>,
@@ -46,7 +62,14 @@ pub fn join(spec: &Spec) -> Result<Joined, Faults> {
             let woven = crate::assembly::woven::build(spec, woven)?;
             let patches = woven::patches(&woven);
             let assembly = woven.assembly.clone();
-            Ok(Joined { assembly, patches, origin: Origin::Woven(Box::new(woven)), remarks: Vec::new() })
+            Ok(Joined {
+                assembly,
+                patches,
+                known: Vec::new(),
+                loose: Vec::new(),
+                origin: Origin::Woven(Box::new(woven)),
+                remarks: Vec::new(),
+            })
         }
         Subject::Meshes(meshes) => join_meshes(spec, meshes),
     }
@@ -66,12 +89,30 @@ fn join_meshes(spec: &Spec, meshes: &MeshSpec) -> Result<Joined, Faults> {
         };
         Faults(overlaps.0.iter().map(fault).collect())
     })?;
-    if !found.assumed.is_empty() {
-        remarks.push(format!(
-            "{} contacts have no normal of their own and got no row: safe for locked, not for free",
-            found.assumed.len()
-        ));
-    }
+    remarks.extend(unvouched(&found.assumed));
     remarks.extend(found.settled.words());
-    Ok(Joined { assembly, patches: found.patches, origin: Origin::Meshes, remarks })
+    let known = found.facts.iter().map(|f| f.known).collect();
+    let loose = found.assumed.into_iter().filter(|a| !a.normals.is_empty());
+    let loose = loose.map(|l| Loose { a: l.a, b: l.b, corners: l.corners, normals: l.normals }).collect();
+    Ok(Joined { assembly, patches: found.patches, known, loose, origin: Origin::Meshes, remarks })
+}
+
+/// What was assumed of contacts without a unique normal.
+fn unvouched(assumed: &[mesh::Assumed]) -> Vec<String> {
+    let (many, none): (Vec<_>, Vec<_>) = assumed.iter().partition(|a| !a.normals.is_empty());
+    let many = (!many.is_empty()).then(|| {
+        format!(
+            "{} contacts of convex corners or edges have no unique normal and got no row: locked holds without \
+             them, and a free motion keeps to one of their planes each",
+            many.len()
+        )
+    });
+    let none = (!none.is_empty()).then(|| {
+        let at = none.iter().take(3).map(|a| a.corners[0].to_string()).collect::<Vec<_>>().join(", ");
+        format!(
+            "{} contacts have no normal of their own and got no row: safe for locked, not for free ({at})",
+            none.len()
+        )
+    });
+    many.into_iter().chain(none).collect()
 }

@@ -29,7 +29,7 @@ pub struct Contacts<'a> {
     pub asm: &'a Assembly,
     pub patches: &'a [Patch],
     beside: Vec<Set>,
-    /// Parts squared, summed over all locks decided: what the answers cost, the same on every machine.
+    /// What the answers cost, the same on every machine: see [`Contacts::pay`].
     pub work: u64,
 }
 
@@ -43,9 +43,15 @@ impl<'a> Contacts<'a> {
         Contacts { asm, patches, beside, work: 0 }
     }
 
+    /// Counts one lock or plan of these parts: pairs of parts, and contact patches between them.
+    pub fn pay(&mut self, set: &Set) {
+        let patches = self.patches.iter().filter(|p| set.contains(&p.a) && set.contains(&p.b)).count();
+        self.work += (set.len() * set.len() + patches) as u64;
+    }
+
     /// The verdict about these parts alone.
     pub fn decide(&mut self, set: &Set) -> Verdict {
-        self.work += (set.len() * set.len()) as u64;
+        self.pay(set);
         let parts: Vec<PartIx> = set.iter().copied().collect();
         locking::check_some(self.asm, self.patches, &parts)
     }

@@ -20,7 +20,7 @@ use crate::sequence::{Fault, Plan};
 use std::time::Instant;
 use symmetry::Symmetry;
 
-/// Enough for some seconds to some minutes: a thousand questions about thirty parts, or 150 about eighty.
+/// About a hundred questions about eighty bricks, or about sixteen woven parts of sixteen crossings.
 pub const WORK: u64 = 1_000_000;
 
 /// Vertices of woven tiles are rounded to 2^-40 of a crossing; a frame set on parts' centres carries that to no more
@@ -33,7 +33,7 @@ pub struct Ask {
     /// Air on each face of a contact, model units; 0: the parts as they touch.
     pub clearance: f64,
     pub wanted: Wanted,
-    /// Locks and plans that may be tried, each counted as its number of parts squared.
+    /// Locks and plans that may be tried, each counted as its pairs of parts and its contact patches.
     pub work: u64,
     /// When to stop; the answer then depends on the machine.
     pub until: Option<Instant>,

@@ -175,7 +175,7 @@ impl<'a> Search<'a> {
     }
 
     fn plan(&mut self, parts: &[PartIx]) -> Result<Plan<()>, NoFlex> {
-        self.contacts.work += (parts.len() * parts.len()) as u64;
+        self.contacts.pay(&parts.iter().copied().collect());
         Ok(sequence::plan_of(&self.planned, parts, self.patches(), |_| None)?)
     }
 

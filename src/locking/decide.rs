@@ -3,20 +3,18 @@
 //! Works on few rows at a time: forces on some rows that balance, with full rank, prove the lock for all; a motion is
 //! tested on all rows and the rows that it breaks join. Sound up to [`ROUND_OFF`]; not complete (undecided).
 
-use super::dense::{Cholesky, pivot_round_off};
+use super::interior::{Found, Rank, rank, search};
+use super::reduce::{kept, outermost, pair, turned};
 use super::rows::{Freedom, Row, Unknowns};
-use super::solve::{Candidate, candidate, widest};
+use super::system::System;
 use crate::assembly::PartIx;
 use glam::DVec3;
+use rayon::prelude::*;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// What the sum of up to a hundred thousand products of numbers of size 1 is off at most, with room for the solves
 /// that lead there: 1e5 units of round-off are 2.2e-11.
 pub const ROUND_OFF: f64 = 1e-10;
-
-/// Openings below this share of the largest count as zero when a motion is polished: guesses, tried in turn. A wrong
-/// one is found out, since the polished motion is tested on every row.
-const KEPT: [f64; 5] = [1e-6, 1e-5, 1e-7, 1e-4, 1e-8];
 
 #[derive(Clone, Debug)]
 pub enum Verdict {
@@ -43,7 +41,8 @@ pub struct Stress {
     pub rank: usize,
     /// Largest component of the forces' sum over any unknown.
     pub residual: f64,
-    /// The smallest pivot of the rows' Gram matrix over its largest: how far the rank is from falling.
+    /// The smallest pivot of the rows' Gram matrix, scaled to a unit diagonal, over its largest: how far the rank is
+    /// from falling.
     pub pivot_ratio: f64,
 }
 
@@ -85,207 +84,158 @@ fn undecided(why: impl Into<String>, size: f64) -> Verdict {
 
 /// Locked, free or undecided over these rows.
 pub fn decide(rows: &[Row], unknowns: &Unknowns) -> Verdict {
-    if unknowns.count == 0 {
-        return Verdict::Locked(Stress { forces: Vec::new(), rank: 0, residual: 0.0, pivot_ratio: 1.0 });
+    match unknowns.freedom {
+        Freedom::Translation => Question::<3> { rows, unknowns }.decide(),
+        Freedom::Rigid => Question::<6> { rows, unknowns }.decide(),
     }
-    let mut chosen = first_rows(rows, unknowns);
-    loop {
-        let some: Vec<Row> = chosen.iter().map(|&k| rows[k]).collect();
-        let motion = match candidate(&some, unknowns) {
-            Candidate::Motion(x) => widest(&some, unknowns).unwrap_or(x),
-            Candidate::Stress(y) => match balance(&some, unknowns, y) {
-                Balanced::Stress(stress) => return Verdict::Locked(stress),
-                Balanced::Null(x) => x,
-                Balanced::Neither(gap) => return Verdict::Undecided(gap),
-            },
-            Candidate::Neither(_) if some.is_empty() => axis(unknowns),
-            Candidate::Neither(why) => return undecided(format!("the solver stopped: {why}"), f64::NAN),
-        };
-        let size = chosen.len();
-        for sign in [1.0, -1.0] {
-            let x: Vec<f64> = motion.iter().map(|v| v * sign).collect();
-            if let Some(motion) = KEPT.iter().find_map(|&kept| polished(rows, unknowns, &x, kept)) {
+}
+
+/// All rows, W unknowns for each free part.
+struct Question<'a, const W: usize> {
+    rows: &'a [Row],
+    unknowns: &'a Unknowns,
+}
+
+impl<const W: usize> Question<'_, W> {
+    fn decide(&self) -> Verdict {
+        if self.unknowns.count == 0 {
+            return Verdict::Locked(Stress { forces: Vec::new(), rank: 0, residual: 0.0, pivot_ratio: 1.0 });
+        }
+        let mut kept = kept(self.rows, self.unknowns);
+        if let Some(motion) = self.alone(&kept) {
+            return Verdict::Free(motion);
+        }
+        let mut chosen = outermost(self.rows, &kept, self.unknowns.freedom);
+        loop {
+            let x = match self.of_chosen(&chosen) {
+                Answer::Moves(x) => x,
+                Answer::Is(verdict) => return verdict,
+            };
+            if let Some(motion) = self.motion(&x) {
                 return Verdict::Free(motion);
             }
-            chosen.extend(broken(rows, unknowns, &x));
-        }
-        if chosen.len() == size {
-            return undecided("a motion breaks no row by more than round-off, yet not none", ROUND_OFF);
+            let before: BTreeSet<usize> = chosen.iter().copied().collect();
+            // What few rows do not lock is asked with all that are worth it; then only what is left out by round-off joins.
+            let mut more = self.broken(&x);
+            more.append(&mut kept);
+            if more.iter().all(|k| before.contains(k)) {
+                return undecided("a motion breaks no row by more than round-off, yet not none", ROUND_OFF);
+            }
+            chosen.extend(more);
+            chosen.sort_unstable_by_key(|&k| (pair(&self.rows[k]), k));
+            chosen.dedup();
         }
     }
-}
 
-/// Where nothing touches, anything moves.
-fn axis(unknowns: &Unknowns) -> Vec<f64> {
-    (0..unknowns.count).map(|k| if k == 0 { 1.0 } else { 0.0 }).collect()
-}
-
-/// For each pair of parts the rows that lie farthest along the axes of force and moment and their diagonals: a first
-/// guess at the extreme rays of the pair's wrench cone.
-fn first_rows(rows: &[Row], unknowns: &Unknowns) -> BTreeSet<usize> {
-    let mut pairs: BTreeMap<(PartIx, PartIx), Vec<usize>> = BTreeMap::new();
-    for (k, row) in rows.iter().enumerate() {
-        pairs.entry((row.a, row.b)).or_default().push(k);
+    fn of_chosen(&self, chosen: &[usize]) -> Answer {
+        let some: Vec<Row> = chosen.iter().map(|&k| turned(&self.rows[k])).collect();
+        let node = |p: PartIx| self.unknowns.column[p.at()].map(|c| c / W);
+        let system = System::<W>::new(&some, self.unknowns, self.unknowns.count / W, node);
+        let x = match search(&system) {
+            Found::Stress(y) => match rank(&system) {
+                Rank::Full(pivot_ratio) => return Answer::Is(self.lock(chosen, &y, pivot_ratio)),
+                Rank::Lacks(x) => x,
+                Rank::Unknown(gap) => return Answer::Is(Verdict::Undecided(gap)),
+            },
+            Found::Motion(x) => x,
+            Found::Neither(gap) => return Answer::Is(Verdict::Undecided(gap)),
+        };
+        Answer::Moves(x.into_iter().flatten().collect())
     }
-    let mut chosen = BTreeSet::new();
-    for of_pair in pairs.values() {
-        let middle = of_pair.iter().map(|&k| rows[k].point).sum::<DVec3>() / of_pair.len() as f64;
-        let wrench = |k: usize| (rows[k].normal, (rows[k].point - middle).cross(rows[k].normal));
-        for (f, m) in probes(unknowns.freedom) {
-            let along = |k: usize| {
-                let (n, t) = wrench(k);
-                f.dot(n) + m.dot(t)
+
+    /// The motion of the first part that can start to move while all others stand still: most free assemblies have
+    /// one, and its few unknowns cost nothing beside those of all parts together.
+    fn alone(&self, chosen: &[usize]) -> Option<Motion> {
+        let mut own: Vec<Vec<usize>> = vec![Vec::new(); self.unknowns.column.len()];
+        for &k in chosen {
+            own[self.rows[k].a.at()].push(k);
+            own[self.rows[k].b.at()].push(k);
+        }
+        own.par_iter().enumerate().find_map_first(|(part, own)| {
+            let column = self.unknowns.column[part]?;
+            let some: Vec<Row> = own.iter().map(|&k| turned(&self.rows[k])).collect();
+            let system = System::<W>::new(&some, self.unknowns, 1, |p| (p.at() == part).then_some(0));
+            let moved = match search(&system) {
+                Found::Motion(x) => x,
+                Found::Stress(_) => match rank(&system) {
+                    Rank::Lacks(x) => x,
+                    Rank::Full(_) | Rank::Unknown(_) => return None,
+                },
+                Found::Neither(_) => return None,
             };
-            chosen.extend(
-                of_pair.iter().copied().max_by(|&i, &j| along(i).total_cmp(&along(j)).then(j.cmp(&i))),
-            );
+            let mut x = vec![0.0; self.unknowns.count];
+            x[column..column + W].copy_from_slice(&moved[0]);
+            self.motion(&x)
+        })
+    }
+
+    /// The forces scaled to at least 1, in the order of the rows, if they balance by the unknowns' own entries too.
+    fn lock(&self, chosen: &[usize], y: &[f64], pivot_ratio: f64) -> Verdict {
+        let least = y.iter().copied().fold(f64::INFINITY, f64::min);
+        let force = |(&k, f): (&usize, &f64)| (k, Force { row: self.rows[k], size: (f / least).max(1.0) });
+        let mut forces: Vec<(usize, Force)> = chosen.iter().zip(y).map(force).collect();
+        forces.sort_unstable_by_key(|f| f.0);
+        let forces: Vec<Force> = forces.into_iter().map(|f| f.1).collect();
+        let residual = self.sum(&forces);
+        let top = forces.iter().map(|f| f.size).fold(0.0, f64::max);
+        if residual.is_nan() || residual > ROUND_OFF * top {
+            return undecided("the forces do not balance to round-off", residual);
         }
+        Verdict::Locked(Stress { forces, rank: self.unknowns.count, residual, pivot_ratio })
     }
-    chosen
-}
 
-fn probes(freedom: Freedom) -> Vec<(DVec3, DVec3)> {
-    let signs =
-        (0..27).map(|k| DVec3::new(f64::from(k % 3 - 1), f64::from(k / 3 % 3 - 1), f64::from(k / 9 - 1)));
-    let dirs: Vec<DVec3> = signs.filter(|d| *d != DVec3::ZERO).collect();
-    let forces = dirs.iter().map(|&d| (d, DVec3::ZERO));
-    match freedom {
-        Freedom::Translation => forces.collect(),
-        Freedom::Rigid => forces.chain(dirs.iter().map(|&d| (DVec3::ZERO, d))).collect(),
+    /// The largest component of the forces' sum.
+    fn sum(&self, forces: &[Force]) -> f64 {
+        let mut sum = vec![0.0; self.unknowns.count];
+        for f in forces {
+            self.unknowns.entries(&f.row).for_each(|(c, v)| sum[c] += v * f.size);
+        }
+        sum.into_iter().map(f64::abs).fold(0.0, f64::max)
     }
-}
 
-/// The row that the motion breaks most, for each pair of parts.
-fn broken(rows: &[Row], unknowns: &Unknowns, x: &[f64]) -> Vec<usize> {
-    let mut worst: BTreeMap<(PartIx, PartIx), (f64, usize)> = BTreeMap::new();
-    let size = largest(x);
-    for (k, row) in rows.iter().enumerate() {
-        let opening = unknowns.opening(row, x) / size;
-        if opening < -ROUND_OFF {
-            let entry = worst.entry((row.a, row.b)).or_insert((opening, k));
-            if opening < entry.0 {
-                *entry = (opening, k);
+    /// The motion, if it keeps every row. Its largest component is 1.
+    fn motion(&self, x: &[f64]) -> Option<Motion> {
+        let openings = || self.rows.iter().map(|r| self.unknowns.opening(r, x));
+        let worst = openings().fold(0.0, f64::min);
+        let opening = openings().fold(0.0, f64::max);
+        let opening = if opening > ROUND_OFF { opening } else { 0.0 };
+        (worst >= -ROUND_OFF).then(|| Motion { twists: twists(self.unknowns, x), opening, worst: -worst })
+    }
+
+    /// The row that the motion breaks most, for each pair of parts.
+    fn broken(&self, x: &[f64]) -> Vec<usize> {
+        let mut worst: BTreeMap<(u32, u32), (f64, usize)> = BTreeMap::new();
+        for (k, row) in self.rows.iter().enumerate() {
+            let opening = self.unknowns.opening(row, x);
+            if opening < -ROUND_OFF {
+                let entry = worst.entry(pair(row)).or_insert((opening, k));
+                if opening < entry.0 {
+                    *entry = (opening, k);
+                }
             }
         }
+        worst.into_values().map(|w| w.1).collect()
     }
-    worst.into_values().map(|w| w.1).collect()
 }
 
-fn largest(x: &[f64]) -> f64 {
-    x.iter().map(|v| v.abs()).fold(0.0, f64::max)
-}
-
-/// The Gram matrix A^T A of some rows.
-fn gram(rows: &[Row], unknowns: &Unknowns) -> Vec<f64> {
-    let n = unknowns.count;
-    let mut g = vec![0.0; n * n];
-    for row in rows {
-        let entries: Vec<(usize, f64)> = unknowns.entries(row).collect();
-        for &(i, v) in &entries {
-            for &(j, w) in &entries {
-                g[i * n + j] += v * w;
-            }
-        }
-    }
-    g
-}
-
-fn factor(rows: &[Row], unknowns: &Unknowns) -> Cholesky {
-    let n = unknowns.count;
-    let g = gram(rows, unknowns);
-    let top = (0..n).map(|k| g[k * n + k]).fold(0.0, f64::max);
-    Cholesky::new(g, n, top * pivot_round_off(rows.len(), n))
-}
-
-/// A^T y.
-fn sum(rows: &[Row], unknowns: &Unknowns, y: &[f64]) -> Vec<f64> {
-    let mut r = vec![0.0; unknowns.count];
-    for (row, f) in rows.iter().zip(y) {
-        for (c, v) in unknowns.entries(row) {
-            r[c] += v * f;
-        }
-    }
-    r
-}
-
-enum Balanced {
-    Stress(Stress),
-    Null(Vec<f64>),
-    Neither(Gap),
-}
-
-/// Projects the forces onto those in balance, y - A (A^T A)^-1 A^T y, and says whether they stay positive; a rank that
-/// is not full gives a null motion instead.
-fn balance(rows: &[Row], unknowns: &Unknowns, mut y: Vec<f64>) -> Balanced {
-    let factor = factor(rows, unknowns);
-    if let Some(x) = factor.null() {
-        return Balanced::Null(x);
-    }
-    // Two rounds: the second takes away what the first one's own round-off left.
-    for _ in 0..2 {
-        let x = factor.solve(&sum(rows, unknowns, &y));
-        for (f, row) in y.iter_mut().zip(rows) {
-            *f -= unknowns.opening(row, &x);
-        }
-    }
-    let least = y.iter().copied().fold(f64::INFINITY, f64::min);
-    if least.is_nan() || least <= 0.0 {
-        return Balanced::Neither(Gap {
-            why: "the forces found do not stay positive in balance".into(),
-            size: least,
-        });
-    }
-    let y: Vec<f64> = y.iter().map(|f| (f / least).max(1.0)).collect();
-    let residual = largest(&sum(rows, unknowns, &y));
-    let top = largest(&y);
-    if residual > ROUND_OFF * top {
-        return Balanced::Neither(Gap {
-            why: "the forces do not balance to round-off".into(),
-            size: residual,
-        });
-    }
-    let forces = rows.iter().zip(&y).map(|(&row, &size)| Force { row, size }).collect();
-    Balanced::Stress(Stress { forces, rank: factor.rank, residual, pivot_ratio: factor.pivot_ratio })
-}
-
-/// The motion with its nearly unmoved rows brought to exactly zero (to round-off), if it then keeps every row.
-fn polished(rows: &[Row], unknowns: &Unknowns, x: &[f64], kept: f64) -> Option<Motion> {
-    let size = largest(x);
-    let mut x: Vec<f64> = x.iter().map(|v| v / size).collect();
-    let top = rows.iter().map(|r| unknowns.opening(r, &x).abs()).fold(0.0, f64::max);
-    let still: Vec<Row> =
-        rows.iter().filter(|r| unknowns.opening(r, &x).abs() <= kept * top.max(kept)).copied().collect();
-    if !still.is_empty() {
-        let factor = factor(&still, unknowns);
-        for _ in 0..3 {
-            let openings: Vec<f64> = still.iter().map(|r| unknowns.opening(r, &x)).collect();
-            let by = factor.solve(&sum(&still, unknowns, &openings));
-            x.iter_mut().zip(by).for_each(|(v, d)| *v -= d);
-        }
-    }
-    let size = largest(&x);
-    // Less than half left: what was polished away was the motion itself.
-    if size < 0.5 {
-        return None;
-    }
-    x.iter_mut().for_each(|v| *v /= size);
-    let openings = || rows.iter().map(|r| unknowns.opening(r, &x));
-    let worst = openings().fold(0.0, f64::min);
-    let opening = openings().fold(0.0, f64::max);
-    let opening = if opening > ROUND_OFF { opening } else { 0.0 };
-    (worst >= -ROUND_OFF).then(|| Motion { twists: twists(unknowns, &x), opening, worst: -worst })
+/// What some of the rows say: a motion that they allow, or the verdict.
+enum Answer {
+    Moves(Vec<f64>),
+    Is(Verdict),
 }
 
 fn twists(unknowns: &Unknowns, x: &[f64]) -> Vec<(PartIx, Twist)> {
     let of = |(part, column): (usize, &Option<usize>)| {
         let c = (*column)?;
-        let translation = DVec3::from_slice(&x[c..]);
+        let own = &x[c..c + unknowns.freedom.unknowns()];
+        let translation = DVec3::from_slice(own);
         let rotation = match unknowns.freedom {
             Freedom::Translation => DVec3::ZERO,
-            Freedom::Rigid => DVec3::from_slice(&x[c + 3..]) / unknowns.lever,
+            Freedom::Rigid => DVec3::from_slice(&own[3..]) / unknowns.lever[part],
         };
         let centre = unknowns.centre[part];
-        Some((PartIx(part as u32), Twist { translation, rotation, centre }))
+        let moves = own.iter().any(|v| *v != 0.0);
+        moves.then_some((PartIx(part as u32), Twist { translation, rotation, centre }))
     };
     unknowns.column.iter().enumerate().filter_map(of).collect()
 }

@@ -23,15 +23,17 @@ use glam::DVec3;
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 
-/// More unknowns than this are not asked: the factor is dense.
-pub const MOST_UNKNOWNS: usize = 1500;
+/// More unknowns than this are not asked: the factor is dense. Nor where unknowns times rows that carry a force are more
+/// than this: for every unknown all rows are summed.
+const MOST_UNKNOWNS: usize = 1500;
+const MOST_WORK: usize = 40_000_000;
 
-/// Linear programs that tighten the bound, and the unknowns up to which they are worth it.
-const MOST_PROGRAMS: usize = 24;
+/// Linear programs that tighten a bound, and the unknowns up to which they are worth it: a tenth of a second or so.
+pub const PROGRAMS: usize = 16;
 const MOST_UNKNOWNS_OF_PROGRAMS: usize = 120;
 
-/// Rows up to which a linear program sees all, not only those that carry a force.
-const MOST_ROWS_OF_PROGRAMS: usize = 4000;
+/// Products of rows and parts up to which motions of single parts are tried for an upper bound.
+const MOST_SINGLES: usize = 2_000_000;
 
 const UNIT: f64 = f64::EPSILON / 2.0;
 
@@ -49,7 +51,8 @@ pub fn speeds(rows: &[Row], unknowns: &Unknowns) -> Vec<f64> {
             if unknowns.column[part.at()].is_none() {
                 return DVec3::ZERO;
             }
-            let arm = (row.point - unknowns.centre[part.at()]).abs() * (turns(unknowns) / unknowns.lever);
+            let arm = (row.point - unknowns.centre[part.at()]).abs()
+                * (turns(unknowns) / unknowns.lever[part.at()]);
             DVec3::new(1.0 + arm.y + arm.z, 1.0 + arm.z + arm.x, 1.0 + arm.x + arm.y)
         };
         (side(row.a) + side(row.b)).length() * (1.0 + 16.0 * UNIT)
@@ -59,9 +62,10 @@ pub fn speeds(rows: &[Row], unknowns: &Unknowns) -> Vec<f64> {
 
 /// Bounds of the relative rate of turning at each row over the unit box, radians for each unit of translation.
 pub fn turnings(rows: &[Row], unknowns: &Unknowns) -> Vec<f64> {
-    let side = |part: PartIx| f64::from(u8::from(unknowns.column[part.at()].is_some()));
+    let side =
+        |part: PartIx| f64::from(u8::from(unknowns.column[part.at()].is_some())) / unknowns.lever[part.at()];
     let root_3 = 3.0_f64.sqrt() * (1.0 + 4.0 * UNIT);
-    let one = |row: &Row| (side(row.a) + side(row.b)) * root_3 * turns(unknowns) / unknowns.lever;
+    let one = |row: &Row| (side(row.a) + side(row.b)) * root_3 * turns(unknowns);
     rows.iter().map(one).collect()
 }
 
@@ -77,13 +81,14 @@ pub struct Bound {
     pub near: Vec<Vec<f64>>,
 }
 
-/// The bound for a lock; none where there are too many unknowns, or the rows that carry a force are nearly dependent.
-pub fn lock(problem: &Weighted, stress: &Stress) -> Option<Bound> {
+/// The bound for a lock, tightened by up to so many linear programs; none where there are too many unknowns, or the rows
+/// that carry a force are nearly dependent.
+pub fn lock(problem: &Weighted, stress: &Stress, programs: usize) -> Option<Bound> {
     let n = problem.unknowns.count;
     if n == 0 {
         return Some(Bound { lower: f64::INFINITY, near: Vec::new() });
     }
-    if n > MOST_UNKNOWNS {
+    if n > MOST_UNKNOWNS || n * stress.forces.len() > MOST_WORK {
         return None;
     }
     let (some, size) = problem.carrying(&stress.forces)?;
@@ -93,15 +98,14 @@ pub fn lock(problem: &Weighted, stress: &Stress) -> Option<Bound> {
     let mut bounds: Vec<(f64, Goal)> = goals.into_par_iter().map(bound).collect();
     let mut near = vec![factor.weakest()];
     if n <= MOST_UNKNOWNS_OF_PROGRAMS {
-        let all = problem.rows.len() <= MOST_ROWS_OF_PROGRAMS;
-        tighten(if all { problem } else { &some }, &mut bounds, &mut near);
+        tighten(&some, programs, &mut bounds, &mut near);
     }
     let lower = bounds.iter().map(|b| b.0).fold(f64::INFINITY, f64::min);
     Some(Bound { lower, near })
 }
 
-/// The angle by which every normal may be turned so that the rows allow one of these motions, or its reverse: the
-/// least found. A row that is closed and does not move needs no turn.
+/// The angle by which every normal may be turned so that the rows allow one of these motions, one of a single part
+/// along or about an axis, or the reverse of one: the least found. A row that is closed and does not move needs no turn.
 pub fn shown(rows: &[Row], unknowns: &Unknowns, motions: &[Vec<f64>]) -> Option<f64> {
     let needed = |x: &[f64], sign: f64| {
         let of = |row: &Row| {
@@ -111,6 +115,9 @@ pub fn shown(rows: &[Row], unknowns: &Unknowns, motions: &[Vec<f64>]) -> Option<
         };
         rows.iter().map(of).fold(0.0, f64::max)
     };
+    let singles = if rows.len() * unknowns.count <= 6 * MOST_SINGLES { unknowns.count } else { 0 };
+    let single = |k: usize| (0..unknowns.count).map(|c| f64::from(u8::from(c == k))).collect::<Vec<f64>>();
+    let motions: Vec<Vec<f64>> = motions.iter().cloned().chain((0..singles).map(single)).collect();
     let all = motions.iter().flat_map(|x| [1.0, -1.0].map(|sign| needed(x, sign)));
     // Room for the rounding of the speeds.
     all.reduce(f64::min).map(|angle| angle * (1.0 + 1e-9))
@@ -122,7 +129,7 @@ fn velocity(row: &Row, unknowns: &Unknowns, x: &[f64]) -> DVec3 {
         let Some(c) = unknowns.column[part.at()] else { return DVec3::ZERO };
         let turn = match unknowns.freedom {
             Freedom::Translation => DVec3::ZERO,
-            Freedom::Rigid => DVec3::from_slice(&x[c + 3..]) / unknowns.lever,
+            Freedom::Rigid => DVec3::from_slice(&x[c + 3..]) / unknowns.lever[part.at()],
         };
         DVec3::from_slice(&x[c..]) + turn.cross(row.point - unknowns.centre[part.at()])
     };
@@ -170,9 +177,9 @@ fn velocity_of(twists: &BTreeMap<PartIx, super::Twist>) -> impl Fn(PartIx, DVec3
 }
 
 /// Solves linear programs for the goals with the least bounds until the least has been solved for.
-fn tighten(problem: &Weighted, bounds: &mut [(f64, Goal)], near: &mut Vec<Vec<f64>>) {
+fn tighten(problem: &Weighted, programs: usize, bounds: &mut [(f64, Goal)], near: &mut Vec<Vec<f64>>) {
     let mut done = vec![false; bounds.len()];
-    for _ in 0..MOST_PROGRAMS {
+    for _ in 0..programs {
         let least = (0..bounds.len()).min_by(|&i, &j| bounds[i].0.total_cmp(&bounds[j].0));
         let Some(k) = least.filter(|&k| !done[k]) else { break };
         done[k] = true;
@@ -278,7 +285,7 @@ mod tests {
             freedom: Freedom::Translation,
             column: vec![None, Some(0)],
             centre: vec![DVec3::ZERO; 2],
-            lever: 1.0,
+            lever: vec![1.0; 2],
             count: 3,
         };
         (rows, unknowns)
@@ -292,7 +299,7 @@ mod tests {
         let stress = Stress { forces, rank: 3, residual: 0.0, pivot_ratio: 1.0 };
         let weights = speeds(&rows, &unknowns);
         let problem = Weighted { rows: rows.clone(), unknowns: &unknowns, weights };
-        let found = lock(&problem, &stress).unwrap();
+        let found = lock(&problem, &stress, PROGRAMS).unwrap();
         let truth = (1.0 / 3.0_f64.sqrt()).asin();
         assert!(found.lower <= truth && found.lower > 0.9 / 3.0_f64.sqrt(), "{}", found.lower);
         let diagonal = vec![vec![1.0, 1.0, 1.0]];

@@ -5,18 +5,23 @@
 //! undecided.
 
 mod decide;
-mod dense;
 mod factor;
+mod interior;
 pub mod margin;
+mod order;
+mod reduce;
 mod rows;
-mod solve;
+mod sparse;
+mod system;
+mod vouch;
 
-pub use decide::{Force, Gap, Motion, Stress, Twist, Verdict, decide};
+pub use decide::{Force, Gap, Motion, ROUND_OFF, Stress, Twist, Verdict, decide};
 pub use rows::{Freedom, Row, Unknowns, rows};
+pub use vouch::check_loose;
 
 use crate::assembly::{Assembly, PartIx};
 use crate::contact::Patch;
-use rayon::prelude::*;
+use std::collections::BTreeSet;
 
 /// Both verdicts about an assembly, and what they are about.
 #[derive(Clone, Debug)]
@@ -38,34 +43,18 @@ pub fn check(assembly: &Assembly, patches: &[Patch], fix: Option<PartIx>) -> Che
     let of = |freedom| {
         let rows = rows(patches, freedom);
         let unknowns = Unknowns::new(assembly, &rows, &still, freedom);
-        (alone(&rows, &unknowns).unwrap_or_else(|| decide(&rows, &unknowns)), rows.len())
+        (decide(&rows, &unknowns), rows.len())
     };
     let (rigid, rows) = of(Freedom::Rigid);
     Check { rigid, translation: of(Freedom::Translation).0, rows, held, fixed }
 }
 
-/// The first part that can start to move while all others stand still: most free assemblies have one, and six unknowns
-/// cost nothing beside those of all parts together. A motion of one part keeps every row that it has no part in.
-fn alone(rows: &[Row], unknowns: &Unknowns) -> Option<Verdict> {
-    let width = unknowns.freedom.unknowns();
-    let mut own: Vec<Vec<Row>> = vec![Vec::new(); unknowns.column.len()];
-    for row in rows {
-        own[row.a.at()].push(*row);
-        own[row.b.at()].push(*row);
-    }
-    own.par_iter().enumerate().find_map_first(|(part, rows)| {
-        unknowns.column[part]?;
-        let column = (0..own.len()).map(|p| (p == part).then_some(0)).collect();
-        let single = Unknowns { column, count: width, ..unknowns.clone() };
-        Some(decide(rows, &single)).filter(|v| matches!(v, Verdict::Free(_)))
-    })
-}
-
 /// The rigid verdict about some of the parts alone, the first of them (or those held) fixed.
 pub fn check_some(assembly: &Assembly, patches: &[Patch], parts: &[PartIx]) -> Verdict {
+    let among: BTreeSet<PartIx> = parts.iter().copied().collect();
     let inside: Vec<Patch> =
-        patches.iter().filter(|p| parts.contains(&p.a) && parts.contains(&p.b)).cloned().collect();
-    let mut still: Vec<PartIx> = assembly.ids().filter(|p| !parts.contains(p)).collect();
+        patches.iter().filter(|p| among.contains(&p.a) && among.contains(&p.b)).cloned().collect();
+    let mut still: Vec<PartIx> = assembly.ids().filter(|p| !among.contains(p)).collect();
     let held: Vec<PartIx> = assembly.held().filter(|p| parts.contains(p)).collect();
     if held.is_empty() {
         still.extend(parts.first());

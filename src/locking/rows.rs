@@ -58,14 +58,16 @@ pub struct Unknowns {
     /// First column of each part; none for a part that stays.
     pub column: Vec<Option<usize>>,
     pub centre: Vec<DVec3>,
-    /// Length in model units that makes rotations comparable with translations: the farthest row from a centre.
-    pub lever: f64,
+    /// For each part the length in model units that makes its rotations comparable with its translations: how far its
+    /// farthest row is from its centre. Its own, so that a small part's turn counts as much as a large one's.
+    pub lever: Vec<f64>,
     pub count: usize,
 }
 
 impl Unknowns {
     /// `fixed` are the parts without columns.
     pub fn new(assembly: &Assembly, rows: &[Row], fixed: &[PartIx], freedom: Freedom) -> Unknowns {
+        let fixed: BTreeSet<PartIx> = fixed.iter().copied().collect();
         let mut count = 0;
         let column = assembly.ids().map(|p| {
             (!fixed.contains(&p)).then(|| {
@@ -75,16 +77,25 @@ impl Unknowns {
         });
         let column = column.collect();
         let centre: Vec<DVec3> = assembly.ids().map(|p| assembly.centre(p)).collect();
-        let far = |r: &Row| (r.point - centre[r.a.at()]).length().max((r.point - centre[r.b.at()]).length());
-        let lever = rows.iter().map(far).fold(0.0, f64::max);
-        Unknowns { freedom, column, centre, lever: if lever > 0.0 { lever } else { 1.0 }, count }
+        let mut lever = vec![0.0; centre.len()];
+        for row in rows {
+            for p in [row.a.at(), row.b.at()] {
+                lever[p] = f64::max(lever[p], (row.point - centre[p]).length());
+            }
+        }
+        lever.iter_mut().filter(|l| **l == 0.0).for_each(|l| *l = 1.0);
+        Unknowns { freedom, column, centre, lever, count }
     }
 
     /// The row's entries (column, value), columns rising within each part.
     pub fn entries(&self, row: &Row) -> impl Iterator<Item = (usize, f64)> + use<> {
         let sides = [(row.a, -1.0), (row.b, 1.0)].map(|(part, sign)| {
             let arm = row.point - self.centre[part.at()];
-            (self.column[part.at()], row.normal * sign, arm.cross(row.normal) * (sign / self.lever))
+            (
+                self.column[part.at()],
+                row.normal * sign,
+                arm.cross(row.normal) * (sign / self.lever[part.at()]),
+            )
         });
         let width = self.freedom.unknowns();
         sides

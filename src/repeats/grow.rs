@@ -29,6 +29,8 @@ pub struct Class {
     pub base: Tried,
     /// What `wefts` and `warps` may grow by.
     pub step: (u32, u32),
+    /// A strand of the smallest swatch that no piece crosses, which by itself leaves it loose.
+    pub uncrossed: Option<Strand>,
     /// Why the lemma does not apply to this class; none where it does.
     pub flaw: Option<String>,
 }
@@ -55,7 +57,7 @@ pub fn grow(
     let class = |&(wefts, warps): &(u32, u32)| {
         let swatch = Swatch { wefts, warps, repeat: k, phase };
         let base = attempt(weave, profile, swatch, AsMade::TOUCHING)?;
-        Ok(Class { base, step, flaw: flaw(weave, swatch, step) })
+        Ok(Class { base, step, uncrossed: uncrossed(&tiles(weave, swatch)), flaw: flaw(weave, swatch, step) })
     };
     sizes.par_iter().map(class).collect()
 }
@@ -87,8 +89,8 @@ fn pieces(weave: &Weave, swatch: Swatch) -> BTreeSet<Piece> {
     tiles(weave, swatch).into_iter().collect()
 }
 
-/// A strand that no piece crosses: a swatch with one can not lock, whatever its weave.
-pub fn uncrossed(pieces: &[Piece]) -> Option<Strand> {
+/// A strand that no piece crosses.
+fn uncrossed(pieces: &[Piece]) -> Option<Strand> {
     let crossed = |p: &Piece| {
         let kind = if p.strand.kind == Kind::Weft { Kind::Warp } else { Kind::Weft };
         pieces.iter().any(|q| {

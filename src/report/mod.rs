@@ -8,6 +8,7 @@ pub mod content;
 pub mod draw;
 pub mod export;
 pub mod file;
+pub mod graphs;
 pub mod page;
 pub mod text;
 pub mod words;

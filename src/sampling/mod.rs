@@ -44,7 +44,8 @@ pub enum Beyond {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Standing {
     pub margin: Option<Margin>,
-    /// Solids read from meshes are as given: nothing is sampled, and their verdicts hold.
+    /// Solids read from meshes are as given and nothing is sampled; but their normals are known to their files'
+    /// digits only, and a lock holds where it survives that.
     pub beyond_sampling: Beyond,
     pub beyond_why: String,
 }
@@ -55,21 +56,40 @@ pub struct Sampling {
     #[serde(flatten)]
     pub rigid: Standing,
     pub translation_standing: Standing,
-    /// Largest angle between a facet's normal and the true surface's, at its corners and middle, radians; 0 for meshes.
-    pub chord_error: f64,
+    /// Largest angle between a facet's normal and the true surface's, near its corners and at its middle, radians; 0 for
+    /// meshes; null where there are too many contacts to measure.
+    pub chord_error: Option<f64>,
     /// Largest distance there of a facet from the true surface, model units; null where a facet is near none.
     pub chord_distance: Option<f64>,
 }
 
+/// Contact patches up to which margins and errors are measured: some seconds.
+pub const MOST_PATCHES: usize = 100_000;
+
+fn not_measured(joined: &Joined) -> Standing {
+    let (beyond_sampling, beyond_why) = match &joined.origin {
+        Origin::Meshes => as_given(),
+        Origin::Woven(_) => (Beyond::Unproven, format!("not measured for more than {MOST_PATCHES} contacts")),
+    };
+    Standing { margin: None, beyond_sampling, beyond_why }
+}
+
 /// How the verdicts of a check stand.
 pub fn standing(joined: &Joined, check: &Check) -> Sampling {
+    if joined.patches.len() > MOST_PATCHES {
+        let (rigid, translation_standing) = (not_measured(joined), not_measured(joined));
+        return Sampling { rigid, translation_standing, chord_error: None, chord_distance: None };
+    }
     let still: Vec<PartIx> = check.held.iter().copied().chain(check.fixed).collect();
     let ground = Ground::new(joined, still);
-    let largest = chord::largest(&ground.errors);
+    let largest = match joined.origin {
+        Origin::Woven(_) => chord::largest(&ground.errors),
+        Origin::Meshes => EXACT,
+    };
     Sampling {
         rigid: ground.standing(Freedom::Rigid, &check.rigid),
         translation_standing: ground.standing(Freedom::Translation, &check.translation),
-        chord_error: largest.angle,
+        chord_error: Some(largest.angle),
         chord_distance: largest.distance.is_finite().then_some(largest.distance),
     }
 }
@@ -88,7 +108,7 @@ impl Ground<'_> {
     fn new(joined: &Joined, still: Vec<PartIx>) -> Ground<'_> {
         let errors = match &joined.origin {
             Origin::Woven(woven) => chord::errors(woven, &joined.patches),
-            Origin::Meshes => vec![EXACT; joined.patches.len()],
+            Origin::Meshes => joined.known.iter().map(|&angle| ChordError { angle, distance: 0.0 }).collect(),
         };
         Ground { joined, still, errors }
     }
@@ -121,7 +141,7 @@ impl Ground<'_> {
 
     fn locked(&self, of: &Weighed, stress: &Stress) -> Standing {
         let speeds = margin::speeds(&of.rows, &of.unknowns);
-        let bound = margin::lock(&of.weighted(speeds.clone()), stress);
+        let bound = margin::lock(&of.weighted(speeds.clone()), stress, margin::PROGRAMS);
         let margin = Margin {
             norm: NORM.into(),
             lower: bound.as_ref().map(|b| b.lower).filter(|l| l.is_finite()),
@@ -138,24 +158,31 @@ impl Ground<'_> {
         speeds: &[f64],
         margin: &Margin,
     ) -> (Beyond, String) {
-        let Origin::Woven(woven) = &self.joined.origin else { return as_given() };
         let most = chord::largest(&of.errors);
         if of.unknowns.count == 0 || most.angle == 0.0 {
             return (Beyond::Holds, "the facets are parts of the true surfaces".into());
         }
+        let what = match self.joined.origin {
+            Origin::Woven(_) => "the facets' errors",
+            Origin::Meshes => "what the files' digits leave open",
+        };
         // Turning by an angle moves a unit normal by less; a point elsewhere moves with the rate of turning.
         let turnings = margin::turnings(&of.rows, &of.unknowns);
         let change = of.errors.iter().zip(speeds).zip(&turnings);
         let change: Vec<f64> =
             change.map(|((e, v), w)| e.angle * (v + e.distance * w) + e.distance * w).collect();
         let survives = change.iter().all(|c| c.is_finite())
-            && margin::lock(&of.weighted(change), stress).is_some_and(|b| b.lower > 1.0);
+            && margin::lock(&of.weighted(change), stress, 0).is_some_and(|b| b.lower > 1.0);
         if survives {
-            return (
-                Beyond::Holds,
-                "the lock survives every change of the contacts within the facets' errors".into(),
-            );
+            return (Beyond::Holds, format!("the lock survives every change of the contacts within {what}"));
         }
+        let Origin::Woven(woven) = &self.joined.origin else {
+            let why = format!(
+                "normals are known to {:.1e} rad at worst, and the lock is not shown to survive that",
+                most.angle
+            );
+            return (Beyond::Unproven, why);
+        };
         let on_curves = chord::true_contacts(woven, &self.joined.patches);
         if self.locks(&on_curves, of.unknowns.freedom) {
             let n = on_curves.len();

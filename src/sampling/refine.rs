@@ -20,7 +20,7 @@ pub struct Level {
     pub rows: usize,
     /// Proven lower bound of the verdict's margin, radians.
     pub margin: Option<f64>,
-    pub chord_error: f64,
+    pub chord_error: Option<f64>,
     pub beyond_sampling: Beyond,
 }
 

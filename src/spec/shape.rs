@@ -16,7 +16,7 @@ use schemars::JsonSchema;
 #[serde(untagged)]
 pub enum SpecFile {
     Woven(Box<WovenFile>),
-    Meshes(MeshesFile),
+    Meshes(Box<MeshesFile>),
 }
 
 #[derive(JsonSchema)]

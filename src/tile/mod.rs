@@ -89,7 +89,8 @@ fn cells(sites: &Sites, lattice: &Lattice, pieces: &[Piece]) -> Result<Cells, Un
     wanted.into_par_iter().map(|s| Ok((s, voronoi::cell(sites, s)?))).collect()
 }
 
-fn of_piece(sites: &Sites, piece: Piece) -> impl Iterator<Item = Site> + '_ {
+/// A piece's own sites, along its strand.
+pub fn of_piece(sites: &Sites, piece: Piece) -> impl Iterator<Item = Site> + '_ {
     (piece.from..piece.to).flat_map(move |c| sites.of_strand(piece.strand, c))
 }
 

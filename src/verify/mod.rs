@@ -7,6 +7,7 @@ pub mod certificate;
 mod dyadic;
 mod field;
 mod flex;
+mod interlock;
 mod mend;
 mod motion;
 mod number;
@@ -107,6 +108,7 @@ fn check(spec: &spec::Spec, joined: &Joined, a: &CheckAnswer) -> Result<Proofs, 
             .map_err(|why| format!("translations: {why}"))?;
     sampling(joined, a)?;
     levels(spec, a)?;
+    interlock::claims(joined, a)?;
     Ok(BTreeMap::from([("rigid".into(), rigid), ("translation".into(), translation)]))
 }
 

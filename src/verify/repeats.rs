@@ -100,7 +100,7 @@ fn profile(w: &WovenSpec) -> ProfileAnswer {
     ProfileAnswer { rise, lift: w.profile.lift, cover: w.profile.cover, samples: w.profile.samples }
 }
 
-/// The least k of each case and of all follows from the rows: locked there, free at every smaller k.
+/// The least k of each case and of all follows from the rows: locked there, free at some phase at every smaller k.
 fn claims(a: &RepeatsAnswer) -> Checked {
     for c in &a.cases {
         same("least k of a case", c.minimal_repeat, least(a, c))?;
@@ -112,7 +112,11 @@ fn claims(a: &RepeatsAnswer) -> Checked {
 }
 
 fn least(a: &RepeatsAnswer, c: &CaseAnswer) -> Option<u32> {
-    (1..=c.searched).find(|&k| locked(a, c, k))
+    let k = (1..=c.searched).find(|&k| locked(a, c, k))?;
+    let free = |r: &RepeatsRow, j: u32| {
+        (r.k, r.swatch) == (j, c.swatch) && r.profile == c.profile && r.rigid == Word::Free
+    };
+    (1..k).all(|j| a.table.iter().any(|r| free(r, j))).then_some(k)
 }
 
 /// Every phase of the case has a locked row at this k.

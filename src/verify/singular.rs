@@ -227,7 +227,7 @@ mod tests {
         let a = dense(&[&[1.0, 2.0, 3.0], &[4.0, 5.0, 6.0], &[7.0, 8.0, 9.0]]);
         assert_eq!(least_singular(&a, 3), None);
         assert_eq!(least_singular(&a[..2], 3), None);
-        // 0.1, 0.2, 0.3 are not 1 : 2 : 3 as f64: full rank, by less than can be told in twice the digits.
+        // Doubling is exact, whatever the digits.
         let b = dense(&[&[0.1, 0.3], &[0.2, 0.6]]);
         assert_eq!(least_singular(&b, 2), None);
     }

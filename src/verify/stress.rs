@@ -26,6 +26,14 @@ use std::collections::{BTreeMap, BTreeSet};
 /// normal 3 more (squares, root, quotient), its own last digit one.
 pub const ROW_ROUND_OFF: f64 = 8.0 * UNIT;
 
+/// Forces as written may miss balance, for each unknown, by this share of all that acts along it, and no more: their own
+/// rounding makes one unit of it, the sums of the solve that made them one for each term, of which a part has up to some
+/// thousands. What a forger makes of a certificate is not one, even where the lock itself is true.
+const BALANCE_ROUND_OFF: f64 = 4096.0 * UNIT;
+
+/// Rows that are off by more are not asked about, so that a product of two changes stays small beside either.
+const MOST_OFF: f64 = 1.0 / 1024.0;
+
 /// Half a unit in the last place of 1.
 const UNIT: f64 = f64::EPSILON / 2.0;
 
@@ -89,10 +97,16 @@ fn judged(stack: &Stack, singular: f64, forces: &[Force], count: usize) -> Resul
         ));
     }
     let share = miss / kept * UP;
+    if stack.unbalanced > BALANCE_ROUND_OFF {
+        return Err(format!(
+            "the forces do not balance: they miss by {:.1e} of themselves, round-off explains {BALANCE_ROUND_OFF:.1e}",
+            stack.unbalanced
+        ));
+    }
     if share >= 1.0 {
         return Err(format!(
-            "the forces do not balance: they miss by {miss:.1e} of themselves, and forces near them that balance \
-             exactly are only known to be positive below {kept:.1e}"
+            "the forces miss balance by {miss:.1e}, and forces near them that balance exactly are only known to be \
+             positive below {kept:.1e}"
         ));
     }
     let bound = (kept - miss) / (stack.turn + stack.spread) / UP;
@@ -102,6 +116,7 @@ fn judged(stack: &Stack, singular: f64, forces: &[Force], count: usize) -> Resul
              reaches {ROW_ROUND_OFF:.1e}"
         ));
     }
+    let bound = bound.min(MOST_OFF);
     let least = forces.iter().map(|f| f.size).fold(f64::INFINITY, f64::min) * (1.0 - share - f64::EPSILON);
     let how = format!(
         "exact forces in balance exist within {share:.1e} (relative) of those written; rank {count} of {count}; \
@@ -181,6 +196,8 @@ struct Stack {
     turn: f64,
     /// |B^T 1|, from an exact sum, rounded up.
     miss: f64,
+    /// Largest part of that, as a share of what acts along its unknown.
+    unbalanced: f64,
 }
 
 /// An entry of B: its column, its value, what rounding can have made of it, its change for a unit off.
@@ -205,9 +222,13 @@ impl Stack {
             spread += (e.off * scale[e.column]).powi(2);
             sums[e.column] += e.off * scale[e.column];
         }
+        let mut acting = vec![0.0; count];
+        all.iter().flatten().for_each(|e| acting[e.column] += e.value.abs() * scale[e.column]);
         let norm = |v: &[f64]| v.iter().map(|x| x * x).sum::<f64>().sqrt() * UP;
         let miss: Vec<f64> =
             miss(forces, frames, width, count).iter().zip(&scale).map(|(m, s)| m * s / top).collect();
+        let share = |(m, a): (&f64, f64)| if *m > 0.0 { m / a } else { 0.0 };
+        let unbalanced = miss.iter().zip(acting).map(share).fold(0.0, f64::max);
         let row = |r: &Vec<Entry>| r.iter().map(|e| (e.column, e.value * scale[e.column])).collect();
         Stack {
             rows: all.iter().map(row).collect(),
@@ -215,6 +236,7 @@ impl Stack {
             spread: spread.sqrt() * UP,
             turn: norm(&sums),
             miss: norm(&miss),
+            unbalanced,
         }
     }
 }
@@ -240,7 +262,7 @@ fn entries(f: &Force, frames: &[Option<Frame>], width: usize, size: f64) -> Vec<
             } else {
                 let (i, j) = ((k + 1) % 3, (k + 2) % 3);
                 let terms = (arm[i] * f.n[j]).abs() + (arm[j] * f.n[i]).abs();
-                let off = arm[i].abs() + arm[j].abs() + far * (f.n[i].abs() + f.n[j].abs());
+                let off = arm[i].abs() + arm[j].abs() + far * (f.n[i].abs() + f.n[j].abs() + 2.0 * MOST_OFF);
                 entry(by * (arm[i] * f.n[j] - arm[j] * f.n[i]), by * terms, 8.0, by * off * UP)
             });
         }

@@ -131,13 +131,22 @@ fn three_mf(poly: &Poly) -> Vec<u8> {
 pub struct Put {
     pub pose: DAffine3,
     pub format: Format,
+    /// Decimals of the pose where it stands in the spec instead of in the meshes.
+    pub in_spec: Option<usize>,
 }
 
 impl Put {
     pub fn turned(axis: [f64; 3], angle: f64, format: Format) -> Put {
         let pose = DAffine3::from_axis_angle(DVec3::from_array(axis).normalize(), angle);
-        Put { pose, format }
+        Put { pose, format, in_spec: None }
     }
+}
+
+fn rows(pose: &DAffine3, decimals: usize) -> String {
+    let m = pose.matrix3.transpose();
+    let row = |r: DVec3, t: f64| format!("{:.d$}, {:.d$}, {:.d$}, {:.d$}", r.x, r.y, r.z, t, d = decimals);
+    [row(m.x_axis, pose.translation.x), row(m.y_axis, pose.translation.y), row(m.z_axis, pose.translation.z)]
+        .join(", ")
 }
 
 /// Writes the assembly into the folder; gives the path of its spec.
@@ -146,9 +155,13 @@ pub fn write(made: &Made, put: Put, tolerance: &str, folder: &Path) -> PathBuf {
     let mut spec = format!("name = \"{}\"\n", made.name);
     for p in &made.parts {
         let file = format!("{}-{}.{}", made.name, p.id, put.format.end());
-        let bytes = put.format.bytes(&p.poly.clone().moved(put.pose));
+        let own = if put.in_spec.is_some() { DAffine3::IDENTITY } else { put.pose };
+        let bytes = put.format.bytes(&p.poly.clone().moved(own));
         std::fs::write(folder.join(&file), bytes).expect("a mesh file");
         writeln!(spec, "[[part]]\nid = \"{}\"\nmesh = \"{file}\"\nheld = {}", p.id, p.held).expect("text");
+        if let Some(decimals) = put.in_spec {
+            writeln!(spec, "at = [{}]", rows(&put.pose, decimals)).expect("text");
+        }
     }
     write!(spec, "[contact]\ntolerance = \"{tolerance}\"\n[size]\nunit = \"mm\"\n").expect("text");
     let path = folder.join(format!("{}.toml", made.name));

@@ -4,8 +4,10 @@
 
 use super::files::{Made, MadePart};
 use super::poly::{Poly, block, cells, convex, ngon, prism, tube, voxels};
+use crate::support::Dice;
 use glam::{DAffine3, DVec3};
-use std::f64::consts::{PI, TAU};
+use std::collections::BTreeMap;
+use std::f64::consts::PI;
 
 const LOCKED: [&str; 2] = ["locked", "locked"];
 const FREE: [&str; 2] = ["free", "free"];
@@ -188,18 +190,8 @@ pub fn wedge(lean: f64, draws: bool) -> Made {
 
 /// Six plates around a body, held.
 fn case(half: f64) -> Vec<MadePart> {
-    let plate = |axis: usize, side: f64| {
-        let (mut lo, mut hi) = ([-half - 3.; 3], [half + 3.; 3]);
-        if side > 0. {
-            lo[axis] = half
-        } else {
-            hi[axis] = -half
-        }
-        block(lo, hi)
-    };
     let name =
         |axis: usize, side: f64| format!("{}-{}", ["x", "y", "z"][axis], pick(side > 0., "high", "low"));
-    // Plates cross at the case's edges: each is cut back to its own face.
     let cut = |axis: usize, side: f64| {
         let (mut lo, mut hi) = ([-half; 3], [half; 3]);
         if side > 0. {
@@ -209,7 +201,6 @@ fn case(half: f64) -> Vec<MadePart> {
         }
         block(lo, hi)
     };
-    let _ = plate;
     let all = (0..3).flat_map(|axis| [-1., 1.].map(|side| part(name(axis, side), true, cut(axis, side))));
     all.collect()
 }
@@ -406,7 +397,7 @@ pub fn twisted(open: bool) -> Made {
 pub fn all() -> Vec<Made> {
     let both = |f: &dyn Fn(bool) -> Made| [f(true), f(false)];
     [
-        both(&dovetail).into_iter().collect::<Vec<_>>(),
+        Vec::from(both(&dovetail)),
         [3, 6, 24].iter().flat_map(|&n| both(&|o| peg(n, o))).collect(),
         [5, 8].iter().flat_map(|&n| both(&|o| staves(n, o))).collect(),
         both(&slanted_sliders).into(),
@@ -423,17 +414,9 @@ pub fn all() -> Vec<Made> {
         both(&twisted).into(),
         both(&tiny_and_huge).into(),
     ]
-    .concat_made()
-}
-
-trait Concat {
-    fn concat_made(self) -> Vec<Made>;
-}
-
-impl<const N: usize> Concat for [Vec<Made>; N] {
-    fn concat_made(self) -> Vec<Made> {
-        self.into_iter().flatten().collect()
-    }
+    .into_iter()
+    .flatten()
+    .collect()
 }
 
 /// The assembly with everything moved.
@@ -443,5 +426,35 @@ pub fn far(m: Made, by: f64) -> Made {
     Made { name: format!("{}-far", m.name), parts, ..m }
 }
 
-#[allow(unused)]
-const _: f64 = TAU;
+/// A cube of n x n x n cells cut at random into pieces that hang together; the first is held. The verdict is not
+/// known from how it is made.
+pub fn cut_cube(n: i32, pieces: usize, dice: &mut Dice) -> Made {
+    let all: Vec<[i32; 3]> = cells([0; 3], [n; 3]).collect();
+    let mut owner: BTreeMap<[i32; 3], usize> = BTreeMap::new();
+    for (piece, &k) in dice.shuffled(all.len()).iter().take(pieces).enumerate() {
+        owner.insert(all[k], piece);
+    }
+    while owner.len() < all.len() {
+        let open: Vec<([i32; 3], usize)> = all
+            .iter()
+            .filter(|c| !owner.contains_key(*c))
+            .flat_map(|c| sides(*c).into_iter().filter_map(|d| owner.get(&d).map(|o| (*c, *o))))
+            .collect();
+        let (cell, piece) = open[dice.below(open.len())];
+        owner.insert(cell, piece);
+    }
+    let part = |p: usize| {
+        let own = owner.iter().filter(|(_, o)| **o == p).map(|(c, _)| *c);
+        part(format!("p{p}"), p == 0, voxels(own, 5.))
+    };
+    made(format!("cut-cube-{n}-{pieces}"), ["?", "?"], (0..pieces).map(part).collect())
+}
+
+fn sides(c: [i32; 3]) -> Vec<[i32; 3]> {
+    let step = |axis: usize, by: i32| {
+        let mut d = c;
+        d[axis] += by;
+        d
+    };
+    (0..3).flat_map(|axis| [step(axis, -1), step(axis, 1)]).collect()
+}

@@ -1,64 +1,176 @@
-//! Made assemblies written as files in every format, turned: the verdict must be the one they were made for.
+//! Made assemblies written as files in every format, turned and moved: the verdict must be the one they were made for.
 
-use super::files::{Format, Put, write};
-use super::made::all;
-use std::path::Path;
+use super::files::{Format, Made, MadePart, Put, write};
+use super::made::{all, cut_cube, far, leaning_blocks, train};
+use crate::second::opinion;
+use crate::support::Dice;
+use glam::{DAffine3, DVec3};
+use std::path::{Path, PathBuf};
+use weavelock::assembly::PartIx;
 use weavelock::contact::{Joined, join};
-use weavelock::locking::{Verdict, check};
+use weavelock::locking::check_loose;
 use weavelock::spec;
 
-pub fn judged(spec_file: &Path) -> Result<(Joined, [Verdict; 2]), String> {
+/// A folder of its own for each test, gone when the test is over.
+struct Folder(PathBuf);
+
+impl Folder {
+    fn new(test: &str) -> Folder {
+        Folder(std::env::temp_dir().join(format!("weavelock-{test}-{}", std::process::id())))
+    }
+}
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        std::fs::remove_dir_all(&self.0).ok();
+    }
+}
+
+fn joined(spec_file: &Path) -> Result<Joined, String> {
     let spec = spec::read(spec_file).map_err(|f| f.to_string())?;
-    let joined = join(&spec).map_err(|f| f.to_string())?;
-    let check = check(&joined.assembly, &joined.patches, None);
-    Ok((joined, [check.translation, check.rigid]))
+    join(&spec).map_err(|f| f.to_string())
+}
+
+fn judged(j: &Joined, fix: Option<PartIx>) -> [&'static str; 2] {
+    let check = check_loose(&j.assembly, &j.patches, &j.loose, fix);
+    [check.translation.word(), check.rigid.word()]
+}
+
+/// The words as found, or the first line of what was refused.
+fn words(made: &Made, put: Put, folder: &Folder) -> Result<[&'static str; 2], String> {
+    joined(&write(made, put, "0.001 mm", &folder.0)).map(|j| judged(&j, None))
+}
+
+/// Why an assembly may be answered otherwise than it was made for; never by the opposite word.
+fn excused(made: &Made, put: &Put) -> Option<&'static str> {
+    let single = matches!(put.format, Format::StlBinary | Format::StlText);
+    match made.name.as_str() {
+        "octahedron-in-case" if single => {
+            Some("corners on walls turn only while they stand exactly opposite")
+        }
+        "tiny-key" | "tiny-key-shut" if put.format == Format::ObjSignificant(6) => {
+            Some("a part of 0.01 mm beside one of a metre has one digit left")
+        }
+        _ => None,
+    }
+}
+
+fn faults(made: &[Made], puts: &[Put], folder: &Folder) -> Vec<String> {
+    let mut faults = Vec::new();
+    for m in made {
+        for put in puts {
+            let found = words(m, *put, folder);
+            match (&found, excused(m, put)) {
+                (Ok(w), _) if *w == m.want => {}
+                (Err(_), Some(_)) => {}
+                (Ok(w), Some(_)) if w.iter().zip(m.want).all(|(w, x)| *w == x || *w == "undecided") => {}
+                _ => faults
+                    .push(format!("{} {:?}: {:?} expected, {found:?} found", m.name, put.format, m.want)),
+            }
+        }
+    }
+    faults
+}
+
+fn turns(dice: &mut Dice, formats: &[Format]) -> Vec<Put> {
+    let turn = |f: &Format| {
+        let axis = [dice.signed(), dice.signed(), dice.signed() + 2.0];
+        Put::turned(axis, 3.0 * dice.signed(), *f)
+    };
+    formats.iter().map(turn).collect()
 }
 
 #[test]
-#[ignore = "to look at"]
-fn look() {
-    let dir = std::env::temp_dir().join(format!("weavelock-made-{}", std::process::id()));
-    let axis = [1., 2., -0.5];
-    let puts = [
-        Put::turned(axis, 0.0, Format::ObjFull),
-        Put::turned(axis, 1.234, Format::ObjFull),
-        Put::turned(axis, 1.234, Format::StlBinary),
-        Put::turned(axis, 1.234, Format::StlText),
-        Put::turned(axis, 1.234, Format::Obj(6)),
-        Put::turned(axis, 1.234, Format::Obj(5)),
-        Put::turned(axis, 1.234, Format::Obj(4)),
-        Put::turned(axis, 1.234, Format::ObjSignificant(6)),
-        Put::turned(axis, 1.234, Format::ThreeMf),
+fn turned_and_rounded_files_have_the_verdict_that_they_were_made_for() {
+    let puts = turns(&mut Dice::new(1), &[Format::StlBinary, Format::Obj(5)]);
+    let faults = faults(&all(), &puts, &Folder::new("rounded"));
+    assert!(faults.is_empty(), "{}", faults.join("\n"));
+}
+
+#[test]
+#[ignore = "slow: every format, several turns"]
+fn every_format_has_the_verdict_that_it_was_made_for() {
+    let formats = [
+        Format::ObjFull,
+        Format::StlBinary,
+        Format::StlText,
+        Format::Obj(6),
+        Format::Obj(4),
+        Format::ObjSignificant(6),
+        Format::ThreeMf,
     ];
-    let only = std::env::var("ONLY").unwrap_or_default();
-    let (mut wrong, mut all_count) = (0, 0);
-    for made in all().iter().filter(|m| m.name.contains(&only)) {
-        let mut line = format!("{:28} {:?}:", made.name, made.want);
-        for put in puts {
-            all_count += 1;
-            match judged(&write(made, put, "0.001 mm", &dir)) {
-                Ok((j, v)) if v.each_ref().map(|v| v.word()) == made.want => {
-                    if std::env::var("MORE").is_ok() {
-                        println!("{} {:?} {:?} {:?}", made.name, put.format, j.remarks, v[1]);
-                    }
-                    line += " ok";
-                }
-                Ok((j, v)) => {
-                    wrong += 1;
-                    let w = v.each_ref().map(|v| &v.word()[..1]).concat();
-                    line += &format!(" {w}!{:?}({} patches)", put.format, j.patches.len());
-                    if std::env::var("MORE").is_ok() {
-                        println!("{:?} {:?}", j.remarks, v);
-                    }
-                }
-                Err(e) => {
-                    wrong += 1;
-                    line += &format!(" ERR {:?} {}", put.format, e.lines().next().unwrap_or(""));
-                }
-            }
-        }
-        println!("{line}");
+    for seed in 2..5 {
+        println!("seed {seed}");
+        let puts = turns(&mut Dice::new(seed), &formats);
+        let faults = faults(&all(), &puts, &Folder::new("formats"));
+        assert!(faults.is_empty(), "{}", faults.join("\n"));
     }
-    std::fs::remove_dir_all(&dir).ok();
-    println!("{wrong} of {all_count} wrong");
+}
+
+#[test]
+fn far_from_the_origin_and_posed_by_the_spec_the_verdicts_are_the_same() {
+    let folder = Folder::new("far");
+    let far_off: Vec<Made> = all().into_iter().map(|m| far(m, 1e6)).collect();
+    let still = Put { pose: DAffine3::IDENTITY, format: Format::ObjFull, in_spec: None };
+    let mut found = faults(&far_off, &[still], &folder);
+    let pose = Put::turned([1., 2., -0.5], 1.234, Format::ObjFull).pose;
+    let pose = DAffine3::from_translation(DVec3::new(100.0, -50.0, 20.0)) * pose;
+    let posed = Put { pose, format: Format::ObjFull, in_spec: Some(6) };
+    // Six decimals of a pose move the ends of a metre by more than the smallest part.
+    let near: Vec<Made> = all().into_iter().filter(|m| !m.name.starts_with("tiny")).collect();
+    found.extend(faults(&near, &[posed], &folder));
+    assert!(found.is_empty(), "{}", found.join("\n"));
+}
+
+#[test]
+fn tees_and_triangles_without_area_change_no_verdict() {
+    let cut = |m: Made| {
+        let parts = m.parts.into_iter().map(|p| MadePart { poly: p.poly.with_tees(), ..p }).collect();
+        Made { parts, ..m }
+    };
+    let all: Vec<Made> = all().into_iter().map(cut).collect();
+    let puts = turns(&mut Dice::new(7), &[Format::ObjFull]);
+    let faults = faults(&all, &puts, &Folder::new("tees"));
+    assert!(faults.is_empty(), "{}", faults.join("\n"));
+}
+
+#[test]
+fn cubes_cut_at_random_have_the_same_verdict_turned_rounded_and_whichever_part_is_fixed() {
+    let folder = Folder::new("cut");
+    let (mut dice, mut seen) = (Dice::new(11), std::collections::BTreeMap::new());
+    for round in 0..24 {
+        let mut made = cut_cube(3 + round % 2, 3 + dice.below(6), &mut dice);
+        let still = Put { pose: DAffine3::IDENTITY, format: Format::ObjFull, in_spec: None };
+        let j = joined(&write(&made, still, "0.001 mm", &folder.0)).unwrap_or_else(|e| panic!("{e}"));
+        let straight = judged(&j, None);
+        let second =
+            [false, true].map(|turning| opinion(&j.assembly, &j.patches, &[PartIx(0)], turning).word());
+        assert!(
+            second.iter().zip(straight).all(|(s, w)| *s == "in doubt" || *s == w),
+            "round {round}: {second:?}"
+        );
+        made.want = straight;
+        *seen.entry(straight).or_insert(0) += 1;
+        let faults = faults(&[made], &turns(&mut dice, &[Format::StlBinary, Format::Obj(4)]), &folder);
+        assert!(faults.is_empty(), "round {round}: {}", faults.join("\n"));
+    }
+    println!("{seen:?}");
+}
+
+#[test]
+#[ignore = "slow: hundreds of parts"]
+fn hundreds_of_parts() {
+    let folder = Folder::new("many");
+    for made in
+        [leaning_blocks(14, 14, true), leaning_blocks(14, 14, false), train(150, true), train(150, false)]
+    {
+        let put = Put::turned([1., 2., -0.5], 1.234, Format::StlBinary);
+        let path = write(&made, put, "0.001 mm", &folder.0);
+        let start = std::time::Instant::now();
+        let j = joined(&path).unwrap_or_else(|e| panic!("{e}"));
+        let found = start.elapsed();
+        let words = judged(&j, None);
+        println!("{}: {} parts, contacts {found:?}, all {:?}", made.name, made.parts.len(), start.elapsed());
+        assert_eq!(words, made.want, "{}", made.name);
+    }
 }

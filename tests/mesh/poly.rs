@@ -18,15 +18,28 @@ impl Poly {
         self
     }
 
-    pub fn at(self, x: f64, y: f64, z: f64) -> Poly {
-        self.moved(DAffine3::from_translation(DVec3::new(x, y, z)))
-    }
-
     /// Both as one part.
     pub fn with(mut self, other: Poly) -> Poly {
         let n = self.points.len();
         self.points.extend(other.points);
         self.faces.extend(other.faces.into_iter().map(|f| f.into_iter().map(|i| i + n).collect()));
+        self
+    }
+
+    /// The same surface, each face of four corners or fewer cut at the middle of its first edge, alone: the neighbor
+    /// across keeps its edge whole (a T-junction), and a triangle without area stands on the cut.
+    pub fn with_tees(mut self) -> Poly {
+        let faces = std::mem::take(&mut self.faces);
+        for f in faces {
+            if f.len() > 4 {
+                self.faces.push(f);
+                continue;
+            }
+            let m = self.points.len();
+            self.points.push((self.points[f[0]] + self.points[f[1]]) / 2.0);
+            self.faces.extend((1..f.len()).map(|k| vec![m, f[k], f[(k + 1) % f.len()]]));
+            self.faces.push(vec![f[0], m, f[0]]);
+        }
         self
     }
 

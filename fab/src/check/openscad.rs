@@ -26,6 +26,13 @@ const VOLUME_TOLERANCE: f64 = 0.001;
 /// How far beyond the part the cube stands, in mm: enough that nothing of it is near.
 const ASIDE: f64 = 10.0;
 
+/// Two files that are looked at together, each with the factor that takes it to finished size.
+#[derive(Clone, Copy, Debug)]
+pub struct Pair<'a> {
+    pub files: [&'a Path; 2],
+    pub factors: [f64; 2],
+}
+
 /// OpenSCAD, its source written out. Dropping it removes the folder.
 pub struct OpenScad {
     program: String,
@@ -59,7 +66,7 @@ impl OpenScad {
     /// Whether OpenSCAD finds the volume (mm3) that we do. `high`: upper corner of the part's box.
     pub fn volume(&self, file: &Path, expected: f64, high: DVec3) -> Check {
         let verdict =
-            quoted(file).and_then(|f| self.gate(&format!("part={f}"), beyond(high))).and_then(|out| {
+            quoted(file).and_then(|f| self.gate(&[format!("part={f}")], beyond(high))).and_then(|out| {
                 let found = out.volume() - CUBE;
                 let off = (found - expected).abs() / expected.abs().max(f64::MIN_POSITIVE);
                 if off <= VOLUME_TOLERANCE {
@@ -74,23 +81,30 @@ impl OpenScad {
     ///
     /// Many pairs go into one run, where each part is read once; only where something comes out, or the run fails, is
     /// each pair of it asked about alone.
-    pub fn apart(&self, pairs: &[(&Path, &Path)], high: DVec3) -> Vec<Check> {
+    pub fn apart(&self, pairs: &[Pair], datum: DVec3, high: DVec3) -> Vec<Check> {
         let share = pairs.len().div_ceil(rayon::current_num_threads()).clamp(1, MOST_PAIRS);
-        let of_run = |pairs: &[(&Path, &Path)]| match self.share_nothing(pairs, high) {
+        let of_run = |pairs: &[Pair]| match self.share_nothing(pairs, datum, high) {
             Ok(()) => vec![Ok(()); pairs.len()],
             Err(why) if pairs.len() == 1 => vec![Err(why)],
-            Err(_) => pairs.iter().map(|p| self.share_nothing(std::slice::from_ref(p), high)).collect(),
+            Err(_) => {
+                pairs.iter().map(|p| self.share_nothing(std::slice::from_ref(p), datum, high)).collect()
+            }
         };
         let verdicts: Vec<_> = pairs.par_chunks(share).flat_map_iter(of_run).collect();
         verdicts.into_iter().map(|v| check(&self.name, "shares no volume", v)).collect()
     }
 
     /// All that comes out is the cube.
-    fn share_nothing(&self, pairs: &[(&Path, &Path)], high: DVec3) -> Result<(), Outcome> {
+    fn share_nothing(&self, pairs: &[Pair], datum: DVec3, high: DVec3) -> Result<(), Outcome> {
         let at = beyond(high);
-        let names = pairs.iter().map(|(a, b)| Ok(format!("[{},{}]", quoted(a)?, quoted(b)?)));
+        let names = pairs.iter().map(|p| {
+            let [a, b] = p.files;
+            let [s, t] = p.factors;
+            Ok(format!("[{},{},{s},{t}]", quoted(a)?, quoted(b)?))
+        });
         let names: Vec<String> = names.collect::<Result<_, Outcome>>()?;
-        let out = self.gate(&format!("pairs=[{}]", names.join(",")), at)?;
+        let datum = format!("datum=[{},{},{}]", datum.x, datum.y, datum.z);
+        let out = self.gate(&[format!("pairs=[{}]", names.join(",")), datum], at)?;
         let Some(shared) = out.vertices.iter().find(|v| v.cmplt(at).any()) else {
             let found = out.volume();
             return if (found - CUBE).abs() < VOLUME_TOLERANCE { Ok(()) } else { Err(no_cube(found)) };
@@ -120,11 +134,9 @@ impl OpenScad {
         check(&self.name, "makes the same solid from the source", verdict)
     }
 
-    fn gate(&self, what: &str, at: DVec3) -> Result<Mesh, Outcome> {
-        self.run(
-            &self.folder.join("gate.scad"),
-            &[what.to_string(), format!("at=[{},{},{}]", at.x, at.y, at.z)],
-        )
+    fn gate(&self, what: &[String], at: DVec3) -> Result<Mesh, Outcome> {
+        let cube = format!("at=[{},{},{}]", at.x, at.y, at.z);
+        self.run(&self.folder.join("gate.scad"), &[what, &[cube]].concat())
     }
 
     fn run(&self, source: &Path, defines: &[String]) -> Result<Mesh, Outcome> {

@@ -95,15 +95,22 @@ fn verdict(program: &str, file: &Path, bodies: usize) -> Result<(), Outcome> {
     if ran.code != Some(0) {
         return failed(format!("it exits {:?}", ran.code));
     }
-    match value_of(&said, "manifold") {
-        Some("yes") => {}
-        other => return failed(format!("manifold = {}", other.unwrap_or("(not said)"))),
+    if let Some(no) = values(&said, "manifold").find(|v| *v != "yes") {
+        return failed(format!("manifold = {no}"));
     }
-    let repair =
-        REPAIRS.iter().find_map(|k| value_of(&said, k).filter(|v| *v != "0").map(|v| format!("{k} = {v}")));
-    match (repair, value_of(&said, "number_of_parts")) {
-        (Some(repair), _) => failed(repair),
-        (None, Some(found)) if found.parse() == Ok(bodies) => Ok(()),
-        (None, other) => failed(format!("number_of_parts = {}", other.unwrap_or("(not said)"))),
+    let repairs = REPAIRS.iter().flat_map(|k| values(&said, k).map(move |v| (k, v)));
+    if let Some((key, count)) = repairs.into_iter().find(|(_, v)| *v != "0") {
+        return failed(format!("{key} = {count}"));
     }
+    let found: Option<usize> = values(&said, "number_of_parts").map(|v| v.parse::<usize>().ok()).sum();
+    match found {
+        Some(found) if found == bodies => Ok(()),
+        Some(0) | None => failed("number_of_parts is not said".into()),
+        Some(found) => failed(format!("number_of_parts = {found}, expected {bodies}")),
+    }
+}
+
+/// Every value that a key has: each object of a file is told by itself.
+fn values<'a>(text: &'a str, key: &str) -> impl Iterator<Item = &'a str> {
+    text.lines().filter_map(move |line| value_of(line, key))
 }

@@ -4,6 +4,8 @@
 //! kept one. First order: where facets bend by an angle t it lies up to about depth * t * t / 2 deeper. Not complete:
 //! shapes exist that it can not offset; it then says where, and the caller writes nothing.
 //!
+//! Where the whole of it fails, `carve` is the fallback of the caller.
+//!
 //! The steps: `body` moves corners, `weld` takes out edges too short to matter, `split` parts corners that have no one
 //! place, `settle` collapses what turned over, `relief` parts bodies that are still nearer than the fit.
 //!
@@ -14,6 +16,7 @@
 //! *Choosing the collapse that leaves the fewest turned triangles*: it likes long edges, and lost whole ridges.
 
 pub mod body;
+pub mod carve;
 pub mod least;
 pub mod relief;
 pub mod settle;

@@ -4,6 +4,7 @@
 //! lowest. Not promised: the least support of all turns, or that a part without a flat face stands.
 
 use crate::mesh::{Mesh, area};
+use crate::mold::frame::hull;
 use glam::{DQuat, DVec2, DVec3};
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -32,7 +33,9 @@ pub struct Laying {
 pub enum Footing {
     /// Its centre of mass is above the face that it stands on.
     Stands,
-    /// It tips over without supports or a brim.
+    /// It has a flat face on the bed, but its centre of mass is beside it: supports or a brim hold it.
+    Leans,
+    /// No flat face of it is on the bed.
     Tips,
 }
 
@@ -102,7 +105,11 @@ fn laid(mesh: &Mesh, faces: &[Face], down: DVec3) -> Laying {
         }
     }
     let above = (turn * centre_of_mass(mesh)).truncate();
-    let footing = if contact > 0.0 && within(&hull(feet), above) { Footing::Stands } else { Footing::Tips };
+    let footing = match contact > 0.0 {
+        true if within(&hull(feet), above) => Footing::Stands,
+        true => Footing::Leans,
+        false => Footing::Tips,
+    };
     let height_mm = high - low;
     Laying {
         turn,
@@ -144,26 +151,6 @@ fn centre_of_mass(mesh: &Mesh) -> DVec3 {
     };
     let sum = (0..mesh.triangles.len()).map(cone).fold((0.0, DVec3::ZERO), |s, c| (s.0 + c.0, s.1 + c.1));
     if sum.0 == 0.0 { o } else { o + sum.1 / sum.0 }
-}
-
-/// The convex hull of points, counter-clockwise (monotone chain).
-fn hull(mut points: Vec<DVec2>) -> Vec<DVec2> {
-    points.sort_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
-    points.dedup();
-    let half = |points: &mut dyn Iterator<Item = DVec2>| {
-        let mut chain: Vec<DVec2> = Vec::new();
-        for p in points {
-            while let [.., a, b] = chain[..]
-                && (b - a).perp_dot(p - a) <= 0.0
-            {
-                chain.pop();
-            }
-            chain.push(p);
-        }
-        chain.pop();
-        chain
-    };
-    [half(&mut points.iter().copied()), half(&mut points.iter().rev().copied())].concat()
 }
 
 fn within(hull: &[DVec2], p: DVec2) -> bool {

@@ -7,12 +7,14 @@
 pub mod bill;
 pub mod folder;
 pub mod laying;
+mod molds;
 pub mod plate;
 mod prints;
 mod sheets;
 mod verdicts;
 
 pub use folder::Replace;
+pub use molds::MoldSheet;
 
 use crate::check::Check;
 use crate::coupon::Coupon;
@@ -39,13 +41,19 @@ pub struct Attachment {
     pub bytes: Vec<u8>,
 }
 
+/// A plate's file, its bed in mm, and what stands on it.
+pub struct ShownPlate {
+    pub file: String,
+    pub bed: [f64; 3],
+    pub stands: Vec<(String, Mesh)>,
+}
+
 /// What pictures are made of.
 pub struct Shown<'a> {
     pub name: &'a str,
     /// Parts at finished size, in place.
     pub parts: Vec<(String, Mesh)>,
-    /// Each plate's name, its bed, and what stands on it.
-    pub plates: Vec<(String, [f64; 3], Vec<(String, Mesh)>)>,
+    pub plates: Vec<ShownPlate>,
     pub coupon: Vec<(String, Mesh)>,
 }
 
@@ -91,6 +99,14 @@ pub struct LayingReport {
     pub laying: Laying,
 }
 
+/// The coupon of a process.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct CouponReport {
+    pub process: String,
+    #[serde(flatten)]
+    pub coupon: Coupon,
+}
+
 /// The answer of a package: the report on the parts, and what came with it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct PackageReport {
@@ -100,7 +116,8 @@ pub struct PackageReport {
     pub layings: Vec<LayingReport>,
     pub plates: Vec<PlateReport>,
     pub assembly: Option<AssemblyReport>,
-    pub coupons: Vec<(String, Coupon)>,
+    pub coupons: Vec<CouponReport>,
+    pub mold_sheets: Vec<MoldSheet>,
     /// Every file of the package but this list, sorted.
     pub files: Vec<String>,
 }
@@ -111,6 +128,7 @@ pub fn pack(job: &Job, recipe: &Recipe, order: &Order, out: &Path) -> Result<Pac
     let mut output = make::output(job, recipe, &folder.path().join("parts"))?;
     relative(&mut output.report, folder.path());
     let mut package = filled(&output, &folder)?;
+    molds::molds(&output, &mut package, &folder, recipe.programs.as_ref())?;
     verdicts::ask(&mut package, recipe, folder.path());
     verdicts::collect(&mut package);
     for file in pictures(&mut package, &output, order) {
@@ -149,6 +167,7 @@ fn filled(output: &Output, folder: &Folder) -> Result<PackageReport, FabError> {
         plates: vec![],
         assembly: None,
         coupons: vec![],
+        mold_sheets: vec![],
         files: vec![],
     };
     let mut files = prints::parts(output, &mut package);
@@ -162,9 +181,13 @@ fn filled(output: &Output, folder: &Folder) -> Result<PackageReport, FabError> {
 }
 
 fn pictures(package: &mut PackageReport, output: &Output, order: &Order) -> Vec<Attachment> {
-    let plates = package.plates.iter().map(|p| (p.file.clone(), p.bed_mm, p.shown.clone())).collect();
-    let coupon = package.coupons.first().map_or(vec![], |(_, c)| {
-        vec![("gauge".to_string(), c.gauge.clone()), ("key".to_string(), c.key.clone())]
+    let plates = package
+        .plates
+        .iter()
+        .map(|p| ShownPlate { file: p.file.clone(), bed: p.bed_mm, stands: p.shown.clone() })
+        .collect();
+    let coupon = package.coupons.first().map_or(vec![], |c| {
+        vec![("gauge".to_string(), c.coupon.gauge.clone()), ("key".to_string(), c.coupon.key.clone())]
     });
     let shown = Shown { name: &package.report.name, parts: prints::finished(output), plates, coupon };
     match (order.draw)(&shown) {

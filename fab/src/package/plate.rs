@@ -52,7 +52,15 @@ pub fn arrange(sizes: &[(DVec3, String)], bed: &Bed) -> Plates {
         corner.x += size.x + SPACING;
         depth = depth.max(size.y);
     }
+    plates.iter_mut().for_each(|plate| centre(plate, sizes, room));
     Plates { plates, too_large }
+}
+
+/// Moves all on a plate together, so that as much is free on the left as on the right, before and behind.
+fn centre(plate: &mut [Stand], sizes: &[(DVec3, String)], room: DVec3) {
+    let far = plate.iter().map(|s| s.at + sizes[s.thing].0).fold(DVec3::ZERO, DVec3::max);
+    let shift = (room - far - DVec3::splat(SPACING)) / 2.0;
+    plate.iter_mut().for_each(|s| s.at += DVec3::new(shift.x, shift.y, 0.0));
 }
 
 #[cfg(test)]
@@ -76,7 +84,7 @@ mod tests {
         for plate in &plates.plates {
             for (i, a) in plate.iter().enumerate() {
                 let end = a.at + sizes[a.thing].0;
-                assert!(a.at.min_element() >= 0.0 && end.x <= 94.0 && end.y <= 74.0);
+                assert!(a.at.truncate().min_element() >= SPACING && end.x <= 94.0 && end.y <= 74.0, "{a:?}");
                 for b in &plate[..i] {
                     let gap = (a.at - (b.at + sizes[b.thing].0)).max(b.at - end);
                     assert!(gap.x.max(gap.y) >= SPACING, "{a:?} {b:?}");

@@ -4,7 +4,7 @@
 //! item in the positive octant. Not promised: that a slicer keeps the places on a plate when it is told to arrange.
 
 use super::laying::lay;
-use super::{AssemblyReport, Attachment, LayingReport, PackageReport, PlateReport, low, plate};
+use super::{AssemblyReport, Attachment, CouponReport, LayingReport, PackageReport, PlateReport, low, plate};
 use crate::coupon::Coupon;
 use crate::files::{stems, stl};
 use crate::make::Output;
@@ -24,12 +24,12 @@ pub fn layings(output: &Output) -> Vec<LayingReport> {
         .collect();
     let lay_one = |&p: &usize| {
         let mesh = output.masters[p].as_ref()?;
-        Some(LayingReport { part: parts[p].id.clone(), laying: lay(mesh) })
+        Some(LayingReport { part: parts[p].id.clone(), laying: output.laid[p].unwrap_or_else(|| lay(mesh)) })
     };
     own.par_iter().filter_map(lay_one).collect()
 }
 
-fn route_of<'a>(output: &'a Output, p: usize) -> Option<&'a RouteReport> {
+fn route_of(output: &Output, p: usize) -> Option<&RouteReport> {
     let id = &output.report.parts[p].id;
     output.report.routes.iter().find(|r| r.parts.contains(id))
 }
@@ -39,7 +39,7 @@ fn printed(output: &Output, p: usize) -> bool {
 }
 
 /// The first written part with the same solid, by the same process.
-fn kind_of(output: &Output, p: usize) -> usize {
+pub fn kind_of(output: &Output, p: usize) -> usize {
     let parts = &output.report.parts;
     let root = |q: usize| parts[q].same_as.as_deref().unwrap_or(&parts[q].id);
     let same = |q: &usize| {
@@ -48,7 +48,7 @@ fn kind_of(output: &Output, p: usize) -> usize {
     (0..p).find(same).unwrap_or(p)
 }
 
-fn stem(output: &Output, p: usize) -> String {
+pub fn stem(output: &Output, p: usize) -> String {
     let file = output.report.parts[p].file.as_deref().unwrap_or("part.mm.stl");
     file.trim_start_matches("parts/").trim_end_matches(".mm.stl").to_string()
 }
@@ -268,7 +268,7 @@ pub fn coupons(package: &mut PackageReport) -> Vec<Attachment> {
             build: Build::Items(vec![(0, DVec3::ZERO, "gauge".into()), (1, low(&coupon.key), "key".into())]),
         };
         files.extend(packed(&format!("coupon/{name}.mm.3mf"), &model, package));
-        package.coupons.push((process, coupon));
+        package.coupons.push(CouponReport { process, coupon });
     }
     files
 }

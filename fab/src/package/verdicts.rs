@@ -9,16 +9,25 @@ use crate::check::{Check, Outcome};
 use crate::make::Recipe;
 use crate::process::Process;
 use crate::report::{Finding, Place, Severity};
+use std::collections::BTreeMap;
 use std::path::Path;
 
 /// Asks whoever is installed; leaves the checks empty where nobody is to be asked.
 pub fn ask(package: &mut PackageReport, recipe: &Recipe, folder: &Path) {
     let Some(programs) = &recipe.programs else { return };
     let name = slicer::name(&programs.slicer);
+    let shells: BTreeMap<String, usize> =
+        package.report.parts.iter().map(|p| (p.id.clone(), p.read_back.shells())).collect();
+    let of = |id: &String| shells.get(id).copied().unwrap_or(0);
     let routes: Vec<Process> = package.report.routes.iter().map(|r| r.process.clone()).collect();
     for plate in &mut package.plates {
         let file = folder.join(&plate.file);
-        plate.checks.push(slicer::bodies(&programs.slicer, &name, &file, plate.stands.len()));
+        plate.checks.push(slicer::bodies(
+            &programs.slicer,
+            &name,
+            &file,
+            plate.stands.iter().map(|s| of(&s.part)).sum(),
+        ));
         let Some(process) = routes.iter().find(|p| p.name == plate.process) else { continue };
         if process.print.material == RESIN {
             let why = "resin is sliced by the machine's own program".to_string();
@@ -31,7 +40,7 @@ pub fn ask(package: &mut PackageReport, recipe: &Recipe, folder: &Path) {
     }
     if let Some(assembly) = &mut package.assembly {
         let file = folder.join(&assembly.file);
-        assembly.checks.push(slicer::bodies(&programs.slicer, &name, &file, assembly.components));
+        assembly.checks.push(slicer::bodies(&programs.slicer, &name, &file, shells.values().sum()));
     }
 }
 

@@ -8,12 +8,12 @@
 use glam::DVec3;
 
 /// Which planes through the point keep the two corners apart.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub(super) enum Separation {
     /// Exactly one, with this unit normal from the first to the second.
     One(DVec3),
-    /// A whole fan of planes: no unique normal.
-    Many,
+    /// A whole fan of planes: no unique normal. Their normals are combinations of these.
+    Many(Vec<DVec3>),
     /// None within round-off: the corners reach into each other by less than the tolerance.
     None,
     /// More facets than are looked at.
@@ -42,7 +42,7 @@ pub(super) fn separation(a: &[DVec3], b: &[DVec3]) -> Separation {
         Some(first) if common.iter().all(|n| n.distance(*first) <= ONE) => {
             Separation::One(common.iter().sum::<DVec3>().normalize())
         }
-        Some(_) => Separation::Many,
+        Some(_) => Separation::Many(common),
     }
 }
 
@@ -51,7 +51,13 @@ fn extreme(a: &[DVec3], b: &[DVec3]) -> Vec<DVec3> {
     let own = a.iter().filter(|n| spans(b, **n)).chain(b.iter().filter(|n| spans(a, **n))).copied();
     let crossing = pairs(a).flat_map(|m| pairs(b).map(move |n| m.cross(n)));
     let crossing = crossing.filter(|d| d.length() > ROUND_OFF).flat_map(|d| [d.normalize(), -d.normalize()]);
-    own.chain(crossing.filter(|&d| spans(a, d) && spans(b, d))).collect()
+    let all = own.chain(crossing.filter(|&d| spans(a, d) && spans(b, d)));
+    all.fold(Vec::new(), |mut all: Vec<DVec3>, n| {
+        if all.iter().all(|m| m.distance(n) > ROUND_OFF) {
+            all.push(n);
+        }
+        all
+    })
 }
 
 /// Unit normals of the planes through two directions each.
@@ -104,8 +110,12 @@ mod tests {
     fn parallel_edges_and_two_box_corners_have_many() {
         let roof = [(X + Z).normalize(), (-X + Z).normalize()];
         let keel = [(X - Z).normalize(), (-X - Z).normalize()];
-        assert_eq!(separation(&roof, &keel), Separation::Many);
-        assert_eq!(separation(&[X, Y, Z], &[-X, -Y, -Z]), Separation::Many);
+        let many = |a: &[DVec3], b: &[DVec3]| match separation(a, b) {
+            Separation::Many(n) => n,
+            other => panic!("{other:?}"),
+        };
+        assert_eq!(many(&roof, &keel).len(), 2);
+        assert_eq!(many(&[X, Y, Z], &[-X, -Y, -Z]), [X, Y, Z]);
     }
 
     #[test]

@@ -26,16 +26,23 @@ const ROUND_OFF: f64 = 16.0 * f64::EPSILON;
 /// For each part the normals of its facets.
 pub(super) fn normals(assembly: &Assembly, accuracy: &[Accuracy], tolerance: f64) -> Vec<Vec<Direction>> {
     let faces: Vec<Faces> = assembly.solids.iter().map(Faces::of).collect();
-    let (mut all, mut apart, mut first) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut all, mut apart, mut first, mut of_all) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
     for p in assembly.ids() {
-        let (own, known) =
-            (&faces[assembly.part(p).solid], accuracy.get(p.at()).copied().unwrap_or_default());
+        let own = &faces[assembly.part(p).solid];
+        let turn = accuracy.get(p.at()).map_or(0.0, |a| a.turn);
+        let off = corner_error(accuracy, p, tolerance);
         let start = all.len();
         first.push(start);
-        all.extend((0..own.normals.len()).map(|k| own.direction(k, assembly, p, known, tolerance)));
+        of_all.extend((0..own.normals.len()).map(|k| (p, k)));
+        all.extend((0..own.normals.len()).map(|k| own.direction(k, assembly, p, [off, turn])));
         apart.extend(own.beside.iter().map(|b| b.iter().map(|k| k + start).collect::<Vec<_>>()));
     }
-    let one = alike(&all, |k| &apart[k]);
+    let fits = |k: usize, d: Direction| {
+        let (p, face) = of_all[k];
+        let own = &faces[assembly.part(p).solid];
+        own.fits(face, d, assembly, p, corner_error(accuracy, p, tolerance))
+    };
+    let one = alike(&all, |k| &apart[k], fits);
     let of =
         |p: PartIx| faces[assembly.part(p).solid].of_facet.iter().map(|k| one[first[p.at()] + k]).collect();
     assembly.ids().map(of).collect()
@@ -45,6 +52,8 @@ pub(super) fn normals(assembly: &Assembly, accuracy: &[Accuracy], tolerance: f64
 struct Faces {
     of_facet: Vec<usize>,
     normals: Vec<DVec3>,
+    /// Points at each face's corners, each once.
+    corners: Vec<Vec<u32>>,
     /// Length of each face's rim over its area: how far its normal turns for each unit that its corners are off.
     rim_per_area: Vec<f64>,
     /// For each face those that share an edge with it.
@@ -88,25 +97,39 @@ impl Faces {
             o.sort_unstable();
             o.dedup();
         });
+        let mut corners = vec![Vec::new(); normals.len()];
+        (0..count).for_each(|k| corners[of_facet[k]].extend(&solid.facets[k].corners));
+        corners.iter_mut().for_each(|c: &mut Vec<u32>| {
+            c.sort_unstable();
+            c.dedup();
+        });
         let rim_per_area = rim.iter().zip(&area).map(|(r, a)| r / a).collect();
-        Faces { of_facet, normals, rim_per_area, beside: other }
+        Faces { of_facet, normals, corners, rim_per_area, beside: other }
     }
 
     /// The face's normal in place. Its area vector is half the sum of p x (next - before) / 2 over the rim, so
-    /// corners off by up to sqrt(3) times a coordinate's error turn it by that times rim over area at most. What
-    /// is known worse than the tolerance is known to the tolerance: the user says that much counts.
-    fn direction(
-        &self,
-        face: usize,
-        asm: &Assembly,
-        p: PartIx,
-        known: Accuracy,
-        tolerance: f64,
-    ) -> Direction {
+    /// corners off by `off` turn it by that times rim over area at most.
+    fn direction(&self, face: usize, asm: &Assembly, p: PartIx, [off, turn]: [f64; 2]) -> Direction {
         let n = asm.part(p).pose.transform_vector3(self.normals[face]).normalize();
-        let off = 3f64.sqrt() * known.corner.min(tolerance);
-        Direction { n, known: off * self.rim_per_area[face] + known.turn + ROUND_OFF }
+        Direction { n, known: off * self.rim_per_area[face] + turn + ROUND_OFF }
     }
+
+    /// Whether the face's corners lie in a plane with that normal as well as both are known. A long thin face may turn
+    /// about its length only.
+    fn fits(&self, face: usize, d: Direction, asm: &Assembly, p: PartIx, off: f64) -> bool {
+        let (solid, pose) = (asm.solid(p), asm.part(p).pose);
+        let corners = self.corners[face].iter().map(|&i| pose.transform_vector3(solid.vertices[i as usize]));
+        let corners: Vec<DVec3> = corners.collect();
+        let middle = corners.iter().sum::<DVec3>() / corners.len() as f64;
+        let allowed = |r: DVec3| 2.0 * off + (d.known + ROUND_OFF) * r.length();
+        corners.iter().map(|c| *c - middle).all(|r| r.dot(d.n).abs() <= allowed(r))
+    }
+}
+
+/// How far a corner may be off. What is known worse than the tolerance is known to the tolerance: the user says that
+/// much counts.
+fn corner_error(accuracy: &[Accuracy], p: PartIx, tolerance: f64) -> f64 {
+    3f64.sqrt() * accuracy.get(p.at()).map_or(0.0, |a| a.corner).min(tolerance)
 }
 
 fn facet_area(solid: &Solid, k: usize) -> f64 {

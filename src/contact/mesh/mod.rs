@@ -27,7 +27,7 @@ use parry3d_f64::bounding_volume::{Aabb, BoundingVolume};
 use parry3d_f64::partitioning::{Bvh, BvhBuildStrategy};
 use rayon::prelude::*;
 use shape::Shape;
-use touch::Touch;
+use touch::{Passed, Touch};
 
 /// What is known of a patch beside its polygon.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -62,6 +62,9 @@ pub struct Assumed {
     /// One point, or the two ends of a stretch, in the assembly's frame.
     pub corners: Vec<DVec3>,
     pub why: Why,
+    /// The planes between two convex corners: their normals from `a` to `b` are combinations of these. None where
+    /// they are not known.
+    pub normals: Vec<DVec3>,
 }
 
 /// The contacts of an assembly of meshes; `facts` runs parallel to `patches`.
@@ -126,12 +129,15 @@ pub fn mesh_patches(
         all.assumed.extend(c.assumed);
         all
     });
-    Ok(with_settled_normals(all))
+    Ok(with_settled_normals(all, tolerance))
 }
 
 /// The contacts with normals made one that cannot be told apart, and corners moved into the planes of theirs.
-fn with_settled_normals(mut all: MeshContacts) -> MeshContacts {
-    let given = all.patches.iter().zip(&all.facts).map(|(p, f)| Direction { n: p.normal, known: f.known });
+fn with_settled_normals(mut all: MeshContacts, tolerance: f64) -> MeshContacts {
+    let given = all.patches.iter().zip(&all.facts).map(|(p, f)| {
+        // No corner moves by more than twice the tolerance.
+        Direction { n: p.normal, known: f.known.min(tolerance / radius(&p.corners)) }
+    });
     let (normals, assumption) = settled(&given.collect::<Vec<_>>());
     for (patch, d) in all.patches.iter_mut().zip(normals) {
         if d.n != patch.normal {
@@ -142,6 +148,12 @@ fn with_settled_normals(mut all: MeshContacts) -> MeshContacts {
     }
     all.settled = assumption;
     all
+}
+
+/// From the middle of the corners to the farthest.
+fn radius(corners: &[DVec3]) -> f64 {
+    let middle = corners.iter().sum::<DVec3>() / corners.len() as f64;
+    corners.iter().map(|p| p.distance(middle)).fold(0.0, f64::max)
 }
 
 /// Middle of the assembly's box: coordinates about it are as small as they can be.
@@ -181,9 +193,11 @@ fn touching(a: &Shape, b: &Shape, origin: DVec3, tolerance: f64) -> MeshContacts
     });
     let rest = small.rows.iter().map(|t| (patch(t.normal, &t.corners), small_facts(t, tolerance)));
     let (patches, facts) = flat.chain(rest).unzip();
-    let assumed = small.passed.iter();
-    let assumed =
-        assumed.map(|q| Assumed { a: a.part, b: b.part, corners: back(&q.corners), why: q.why }).collect();
+    let assumed = |q: &Passed| {
+        let (corners, normals) = (back(&q.corners), q.normals.clone());
+        Assumed { a: a.part, b: b.part, corners, why: q.why, normals }
+    };
+    let assumed = small.passed.iter().map(assumed).collect();
     MeshContacts { patches, facts, assumed, settled: Assumption::default() }
 }
 

@@ -13,6 +13,8 @@ use super::overlap::segment_distance;
 use super::polygon;
 use super::shape::{Shape, around};
 use glam::{DVec2, DVec3};
+use parry3d_f64::bounding_volume::{Aabb, BoundingVolume};
+use parry3d_f64::partitioning::{Bvh, BvhBuildStrategy};
 use std::collections::BTreeMap;
 
 /// A contact of one corner or two, with its unit normal from the first shape to the second.
@@ -43,6 +45,14 @@ pub enum Why {
 pub(super) struct Passed {
     pub corners: Vec<DVec3>,
     pub why: Why,
+    /// The admissible normals are combinations of these; none where they are not known.
+    pub normals: Vec<DVec3>,
+}
+
+impl Passed {
+    fn alike(&self, other: &Passed) -> bool {
+        self.why == other.why && self.normals == other.normals
+    }
 }
 
 #[derive(Default)]
@@ -54,6 +64,7 @@ pub(super) struct Touches {
 /// All contacts smaller than a face that the given faces do not say already.
 pub(super) fn touches(a: &Shape, b: &Shape, faces: &[Flush], tolerance: f64) -> Touches {
     let mut all = Touches::default();
+    let given = Given::new(faces, 2.0 * tolerance);
     let places = along_faces(a, b, tolerance)
         .into_iter()
         .chain(along_faces(b, a, tolerance).into_iter().map(Place::turned))
@@ -62,7 +73,7 @@ pub(super) fn touches(a: &Shape, b: &Shape, faces: &[Flush], tolerance: f64) -> 
         .chain(vertices(b, a, tolerance).into_iter().map(Place::turned))
         .chain(edge_pairs(a, b, tolerance, Pairing::Across));
     for place in places {
-        add(&mut all, &place, faces, tolerance);
+        add(&mut all, &place, &given);
     }
     all
 }
@@ -80,26 +91,50 @@ impl Place<'_> {
     }
 }
 
-fn add(all: &mut Touches, place: &Place, faces: &[Flush], tolerance: f64) {
-    let reach = 2.0 * tolerance;
+/// The faces on which the shapes lie flat, with a search tree over them.
+struct Given<'a> {
+    faces: &'a [Flush],
+    tree: Bvh,
+    /// How near is there, in model units.
+    reach: f64,
+}
+
+impl Given<'_> {
+    fn new(faces: &[Flush], reach: f64) -> Given<'_> {
+        let boxes: Vec<Aabb> =
+            faces.iter().map(|f| around(f.corners.iter().copied()).loosened(reach)).collect();
+        Given { faces, tree: Bvh::from_leaves(BvhBuildStrategy::Binned, &boxes), reach }
+    }
+
+    /// The faces on which p stands.
+    fn at(&self, p: DVec3) -> impl Iterator<Item = &Flush> {
+        let point = around(std::iter::once(p));
+        let near = self.tree.intersect_aabb(&point).map(|k| &self.faces[k as usize]).collect::<Vec<_>>();
+        near.into_iter().filter(move |f| on_polygon(f, p, self.reach))
+    }
+}
+
+fn add(all: &mut Touches, place: &Place, given: &Given) {
+    let reach = given.reach;
     let covered = |on: &dyn Fn(DVec3) -> bool| place.corners.iter().all(|&p| on(p));
-    let by_face = covered(&|p| faces.iter().any(|f| on_polygon(f, p, reach)));
+    let by_face = covered(&|p| given.at(p).next().is_some());
     let by_row = covered(&|p| all.rows.iter().any(|t| on_stretch(&t.corners, p, reach)));
     match verdict(place) {
         // Two convex corners on a common face are kept apart by it: their one plane is the face's own.
         Ok(_) if by_face && place.a.form == Form::Convex && place.b.form == Form::Convex => {}
         Ok(normals) => {
-            let says = |n: DVec3, p: DVec3| known(all, faces, n, p, reach);
+            let says = |n: DVec3, p: DVec3| known(all, given, n, p);
             let new = normals.into_iter().filter(|&(n, _)| !covered(&|p| says(n, p)));
             let touch = |(normal, known)| Touch { normal, known, corners: place.corners.clone() };
             let new: Vec<Touch> = new.map(touch).collect();
             all.rows.extend(new);
         }
         Err(_) if by_face || by_row => {}
-        Err(why) => {
+        Err((why, normals)) => {
             let listed = |q: &Passed| covered(&|p| on_stretch(&q.corners, p, reach));
             if !all.passed.iter().any(listed) {
-                list(&mut all.passed, Passed { corners: place.corners.clone(), why }, reach);
+                let corners = place.corners.clone();
+                list(&mut all.passed, Passed { corners, why, normals }, reach);
             }
         }
     }
@@ -108,11 +143,11 @@ fn add(all: &mut Touches, place: &Place, faces: &[Flush], tolerance: f64) {
 /// Adds to the list; a stretch that goes on where another one ends makes that one longer.
 fn list(passed: &mut Vec<Passed>, new: Passed, reach: f64) {
     let longer =
-        passed.iter().position(|q| q.why == new.why && continued(&q.corners, &new.corners, reach).is_some());
+        passed.iter().position(|q| q.alike(&new) && continued(&q.corners, &new.corners, reach).is_some());
     match longer.and_then(|k| continued(&passed[k].corners, &new.corners, reach).map(|c| (k, c))) {
         Some((k, corners)) => {
             passed.remove(k);
-            list(passed, Passed { corners, why: new.why }, reach);
+            list(passed, Passed { corners, ..new }, reach);
         }
         None => passed.push(new),
     }
@@ -131,9 +166,9 @@ fn continued(p: &[DVec3], q: &[DVec3], reach: f64) -> Option<Vec<DVec3>> {
 
 /// Whether a row with this normal is there at p already. A face's normal is the mean of two that differ by
 /// its tilt.
-fn known(all: &Touches, faces: &[Flush], n: DVec3, p: DVec3, reach: f64) -> bool {
-    faces.iter().any(|f| angle(f.normal, n) <= f.tilt + SAME && on_polygon(f, p, reach))
-        || all.rows.iter().any(|t| angle(t.normal, n) <= SAME && on_stretch(&t.corners, p, reach))
+fn known(all: &Touches, given: &Given, n: DVec3, p: DVec3) -> bool {
+    given.at(p).any(|f| angle(f.normal, n) <= f.tilt + SAME)
+        || all.rows.iter().any(|t| on_stretch(&t.corners, p, given.reach) && angle(t.normal, n) <= SAME)
 }
 
 /// Rows whose normals differ by less (radians) say the same: round-off of unit normals.
@@ -144,7 +179,7 @@ fn angle(m: DVec3, n: DVec3) -> f64 {
 }
 
 /// The normals, from the first to the second, of the rows that hold at a place, and how well they are known.
-fn verdict(place: &Place) -> Result<Vec<(DVec3, f64)>, Why> {
+fn verdict(place: &Place) -> Result<Vec<(DVec3, f64)>, (Why, Vec<DVec3>)> {
     let yields = |l: &Local| matches!(l.form, Form::Flat | Form::Reflex);
     let own = place.a.normals.iter().map(|&n| (n, place.a.known)).filter(|_| yields(place.a));
     let other = place.b.normals.iter().map(|&n| (-n, place.b.known)).filter(|_| yields(place.b));
@@ -153,13 +188,13 @@ fn verdict(place: &Place) -> Result<Vec<(DVec3, f64)>, Why> {
         return Ok(rows);
     }
     if place.a.form == Form::Saddle || place.b.form == Form::Saddle {
-        return Err(Why::Saddle);
+        return Err((Why::Saddle, Vec::new()));
     }
     match separation(&place.a.normals, &place.b.normals) {
         Separation::One(n) => Ok(vec![(n, of_edges(place.a, place.b))]),
-        Separation::Many => Err(Why::ManyNormals),
-        Separation::None => Err(Why::NoNormal),
-        Separation::Undecided => Err(Why::ManyFaces),
+        Separation::Many(normals) => Err((Why::ManyNormals, normals)),
+        Separation::None => Err((Why::NoNormal, Vec::new())),
+        Separation::Undecided => Err((Why::ManyFaces, Vec::new())),
     }
 }
 

@@ -67,7 +67,7 @@ pub struct FlexAnswer {
     pub unproven: Vec<Vec<String>>,
     /// Air on each face of a contact, mm; 0: the parts as they touch.
     pub clearance_mm: f64,
-    /// Locks and plans tried, each counted as its number of parts squared.
+    /// Locks and plans tried, each counted as its parts squared and its contact patches.
     pub work: u64,
     pub remarks: Vec<String>,
     pub source: Source,

@@ -3,12 +3,21 @@
 //! Every answer carries the text of its spec, so that it can be checked without the file, and a checksum against
 //! accidental change. Not promised: that a checksum stops a forger; `verify` re-does the mathematics.
 
+mod blocking;
+pub mod fab;
 mod flex;
+mod interlock;
 pub mod repeats;
 mod sampling;
 mod weave;
 
+pub use blocking::{
+    ArcAnswer, BlockingAnswer, CellAnswer, Connected, DbgAnswer, Found, NdbgAnswer, ReachWord, blocking, dbg,
+};
 pub use flex::{CoreAnswer, FlexAnswer, OrbitAnswer, SymmetryOfParts, flex};
+pub use interlock::{
+    DirectionsAnswer, InterlockAnswer, InterlockWord, KeyAnswer, LockedCore, SearchedAnswer, interlock,
+};
 pub use repeats::RepeatsAnswer;
 pub use sampling::{check_of, refined};
 pub use weave::{WeaveAnswer, weave};
@@ -126,6 +135,12 @@ pub struct CheckAnswer {
     pub held: Vec<String>,
     /// The part taken as fixed where none is held; the verdict does not depend on which.
     pub fixed: Option<String>,
+    /// Locked whichever one part is held.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub interlocked: Option<InterlockWord>,
+    /// Keys and cores.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub interlock: Option<InterlockAnswer>,
     /// Margins, and whether the verdicts hold beyond the samples.
     #[serde(flatten)]
     pub sampling: Sampling,
@@ -182,6 +197,8 @@ pub fn check(joined: &Joined, check: &Check, source: Source) -> CheckAnswer {
         rows: check.rows,
         held: ids(assembly, &check.held),
         fixed: check.fixed.map(|p| assembly.part(p).id.clone()),
+        interlocked: None,
+        interlock: None,
         sampling: standing(joined, check),
         refine: None,
         remarks: joined.remarks.clone(),
@@ -189,6 +206,13 @@ pub fn check(joined: &Joined, check: &Check, source: Source) -> CheckAnswer {
         checksum: String::new(),
     };
     CheckAnswer { checksum: checksum(&answer), ..answer }
+}
+
+/// The answer with what was found about keys and cores.
+pub fn with_interlock(answer: CheckAnswer, interlock: InterlockAnswer) -> CheckAnswer {
+    let (interlocked, checksum) = (Some(interlock.word), String::new());
+    let answer = CheckAnswer { interlocked, interlock: Some(interlock), checksum, ..answer };
+    CheckAnswer { checksum: self::checksum(&answer), ..answer }
 }
 
 pub fn plan(

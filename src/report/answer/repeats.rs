@@ -73,7 +73,7 @@ pub struct CaseAnswer {
     pub profile: ProfileAnswer,
     pub swatch: SwatchAnswer,
     pub phases: Vec<i32>,
-    /// Least k that locks at every phase; null where none was found up to `searched`.
+    /// Least k that locks at every phase; null where none was found up to `searched`, or a smaller one is undecided.
     pub minimal_repeat: Option<u32>,
     /// For each phase its own least k.
     pub by_phase: Vec<Option<u32>>,
@@ -88,6 +88,8 @@ pub struct ClassAnswer {
     pub step: [u32; 2],
     /// The word for the class: that of its smallest swatch where that is locked and the lemma applies.
     pub holds: String,
+    /// A strand of the smallest swatch that no piece crosses; null where each is crossed.
+    pub uncrossed: Option<String>,
     pub base: RepeatsRow,
 }
 
@@ -127,6 +129,7 @@ pub fn repeats(
     let class = |c: &Class| ClassAnswer {
         step: [c.step.0, c.step.1],
         holds: class_word(c).into(),
+        uncrossed: c.uncrossed.map(|s| s.to_string()),
         base: row(classes.0, &c.base, made),
     };
     let answer = RepeatsAnswer {
@@ -180,17 +183,23 @@ fn case(c: &Case) -> Option<CaseAnswer> {
     phases.dedup();
     let at = |k: u32| c.tried.iter().filter(move |t| t.swatch.repeat == k);
     let searched = c.tried.iter().map(|t| t.swatch.repeat).max().unwrap_or(0);
-    let least =
+    let first_k =
         |holds: &dyn Fn(&Tried) -> bool| (1..=searched).find(|&k| at(k).count() > 0 && at(k).all(holds));
-    let own =
-        |&phase: &i32| c.tried.iter().find(|t| t.swatch.phase == phase && t.holds()).map(|t| t.swatch.repeat);
+    // The least only where each smaller k is known not to lock: undecided is not free.
+    let free = |t: &Tried| matches!(t.rigid, Verdict::Free(_));
+    let minimal = first_k(&Tried::holds).filter(|&k| (1..k).all(|j| at(j).any(free)));
+    let own = |&phase: &i32| {
+        let rows = || c.tried.iter().filter(move |t| t.swatch.phase == phase);
+        let k = rows().filter(|t| t.holds()).map(|t| t.swatch.repeat).min()?;
+        rows().filter(|t| t.swatch.repeat < k).all(free).then_some(k)
+    };
     Some(CaseAnswer {
         profile: profile(c.profile),
         swatch: SwatchAnswer { wefts: first.swatch.wefts, warps: first.swatch.warps },
-        minimal_repeat: least(&Tried::holds),
+        minimal_repeat: minimal,
         by_phase: phases.iter().map(own).collect(),
         searched,
-        no_plan_from: least(&|t| matches!(t.made, Some(Made::NotFound { .. }))),
+        no_plan_from: first_k(&|t| matches!(t.made, Some(Made::NotFound { .. }))),
         phases,
     })
 }

@@ -19,6 +19,7 @@ mod paint;
 pub mod palette;
 pub mod scene;
 pub mod sheet;
+pub mod sphere;
 mod strokes;
 
 pub use camera::{Projection, View};

@@ -64,6 +64,13 @@ pub fn pour(p: &PackageReport) -> Option<String> {
     );
     for r in routes {
         s += &format!("\n## {}\n", r.process.title);
+        for m in p.mold_sheets.iter().filter(|m| m.process == r.process.name && !m.report.volumes.is_empty())
+        {
+            s += &format!("\n{}, with sprues, runners and boxes:\n", m.report.name);
+            let grams = |v: &crate::mold::Volume| v.grams.map_or(String::new(), |g| format!("{g:.1}"));
+            let row = |v: &crate::mold::Volume| vec![v.of.clone(), short(v.mm3 / MM3_IN_CM3), grams(v)];
+            s += &table(&["volume", "cm3", "g"], m.report.volumes.iter().map(row));
+        }
         let parts = p.report.parts.iter().filter(|q| q.file.is_some() && r.parts.contains(&q.id));
         let row = |q: &crate::report::PartReport| {
             let cm3 = (q.nominal_volume_mm3 - q.removed_mm3) / MM3_IN_CM3;

@@ -23,14 +23,24 @@ pub fn sheet(p: &PackageReport) -> String {
             q.file.clone().unwrap_or("not written".into()),
             r.watertight.map_or("-".into(), |w| if w { "yes".into() } else { "no".into() }),
             r.bodies.map_or("-".into(), |b| b.to_string()),
+            r.hollows.map_or("-".into(), |b| b.to_string()),
             r.genus.map_or("-".into(), |g| g.to_string()),
             r.triangles.map_or("-".into(), |t| t.to_string()),
             r.volume_mm3.map_or("-".into(), |v| format!("{v:.2}")),
             wall,
         ]
     };
-    let head =
-        ["part", "file", "watertight", "bodies", "handles", "triangles", "volume, mm3", "thinnest wall, mm"];
+    let head = [
+        "part",
+        "file",
+        "watertight",
+        "bodies",
+        "hollows",
+        "handles",
+        "triangles",
+        "volume, mm3",
+        "thinnest wall, mm",
+    ];
     s += &table(&head, p.report.parts.iter().map(row));
     s += "\nEach was read back and is bit for bit what was meant, does not cross itself, and keeps its gaps (ledger.md).\n\n## By other programs\n";
     let rows = others(p);
@@ -48,7 +58,8 @@ fn others(p: &PackageReport) -> Vec<Vec<String>> {
     let pairs = p.report.pair_checks.iter().map(|q| row(&format!("{} and {}", q.a, q.b), &q.check));
     let plates = p.plates.iter().flat_map(|q| q.checks.iter().map(|c| row(&q.file, c)));
     let whole = p.assembly.iter().flat_map(|a| a.checks.iter().map(|c| row(&a.file, c)));
-    parts.chain(pairs).chain(plates).chain(whole).collect()
+    let molds = p.report.molds.iter().flat_map(|m| m.checks.iter().map(|c| row(&m.file, c)));
+    parts.chain(pairs).chain(plates).chain(whole).chain(molds).collect()
 }
 
 fn row(what: &str, check: &Check) -> Vec<String> {

@@ -4,7 +4,7 @@
 
 use super::table::{short, table};
 use crate::ledger::Entry;
-use crate::package::PackageReport;
+use crate::package::{CouponReport, PackageReport};
 use crate::process::COUPON_MM;
 use crate::report::RouteReport;
 
@@ -78,9 +78,9 @@ fn fits(p: &PackageReport) -> String {
 
 pub fn coupon(p: &PackageReport) -> String {
     let mut s = format!(
-        "# Coupon: measure before you make\n\nThe coupon is drawn at its true size. Print it at 100 % with the settings of the parts, take it through every step that the parts go through, and measure it after each.\n\n1. **Shrinkage.** Both bars of the L are {COUPON_MM} mm long, outside to outside. Measure both cold, take the mean. Where it is not what the table says, make the package again:\n\n       weavelock fab FILE --measured STEP=LENGTH\n\n   with the length in mm after that step, as in `--measured print=59.80`; several steps with commas. In the spec the same is `[fab.shrinkage]` with `print = \"0.33 %\"`.\n2. **Clearance.** Push the key into the notches, number 1 next to the corner. The first in which it slides without force, and does not rattle, is your fit:\n\n       weavelock fab FILE --clearance \"0.25 mm\"\n\n   or `clearance = \"0.25 mm\"` in the spec's `[fab]`.\n",
+        "# Coupon: measure before you make\n\nThe coupon is drawn at its true size. Print it at 100 % with the settings of the parts, take it through every step that the parts go through (a mold of it, where they are molded), and measure it after each.\n\n1. **Shrinkage.** Both bars of the L are {COUPON_MM} mm long, outside to outside. Measure both cold, take the mean. Where it is not what the table says, make the package again:\n\n       weavelock fab FILE --measured STEP=LENGTH\n\n   with the length in mm after that step, as in `--measured print=59.80`; several steps with commas. In the spec the same is `[fab.shrinkage]` with `print = \"0.33 %\"`.\n2. **Clearance.** Push the key into the notches, number 1 next to the corner. The first in which it slides without force, and does not rattle, is your fit:\n\n       weavelock fab FILE --clearance \"0.25 mm\"\n\n   or `clearance = \"0.25 mm\"` in the spec's `[fab]`.\n",
     );
-    for (process, c) in &p.coupons {
+    for CouponReport { process, coupon: c } in &p.coupons {
         let Some(r) = p.report.routes.iter().find(|r| r.process.name == *process) else { continue };
         s += &format!("\n## {}\n", r.process.title);
         let mut length = c.bar_mm;

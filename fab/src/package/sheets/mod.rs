@@ -6,6 +6,7 @@
 mod cast;
 mod checked;
 mod ledger;
+mod molds;
 mod print;
 mod start;
 mod table;
@@ -19,8 +20,9 @@ pub fn write(package: &PackageReport, folder: &Folder) -> Result<(), FileError> 
         ("README.md", Some(start::sheet(package))),
         ("1-coupon.md", Some(ledger::coupon(package))),
         ("2-print.md", print::sheet(package)),
-        ("3-cast.md", cast::sheet(package)),
-        ("4-pour.md", cast::pour(package)),
+        ("3-molds.md", molds::sheet(package)),
+        ("4-cast.md", cast::sheet(package)),
+        ("5-pour.md", cast::pour(package)),
         ("bill-of-materials.md", Some(start::bill(package))),
         ("ledger.md", Some(ledger::sheet(package))),
         ("checked.md", Some(checked::sheet(package))),

@@ -69,7 +69,8 @@ fn plate(q: &PlateReport) -> Vec<String> {
 fn laying(l: &LayingReport, layer: f64) -> Vec<String> {
     let d = l.laying.down;
     let supports = match (l.laying.footing, l.laying.overhang_mm2 > 0.0) {
-        (Footing::Tips, _) => "tips: supports and a brim",
+        (Footing::Tips, _) => "no flat face below: supports and a brim, or a raft",
+        (Footing::Leans, _) => "supports below what overhangs, and a brim: it does not stand by itself",
         (Footing::Stands, true) => "supports below what overhangs",
         (Footing::Stands, false) => "no supports",
     };

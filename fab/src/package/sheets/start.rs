@@ -29,13 +29,17 @@ pub fn sheet(p: &PackageReport) -> String {
     s
 }
 
-const FILES: [(&str, &str); 7] = [
+const FILES: [(&str, &str); 8] = [
     (
         "parts/",
         "each part in its place in the assembly, at the size of its master (STL, OBJ, 3MF; STL has no unit, so the name says mm)",
     ),
     ("print/", "plates ready to slice, each part turned and placed on the bed"),
     ("assembly.mm.3mf", "all parts in place as one object, to look at; not there where a clearance is zero"),
+    (
+        "molds/",
+        "molds as STL, their OpenSCAD sources with figures to change, maps and pictures; there where something is cast",
+    ),
     ("coupon/", "what is printed first, to measure machine and material"),
     (
         "bill-of-materials.md, ledger.md, checked.md",
@@ -67,7 +71,13 @@ fn steps(p: &PackageReport) -> Vec<String> {
         steps.push("Print the plates: [2-print.md](2-print.md).".into());
     }
     if casts {
-        steps.push("Make the molds and cast, in the order of [3-cast.md](3-cast.md); how much to mix and melt: [4-pour.md](4-pour.md).".into());
+        if !p.mold_sheets.is_empty() {
+            steps.push("Print or make the molds: [3-molds.md](3-molds.md).".into());
+        }
+        steps.push(
+            "Cast, in the order of [4-cast.md](4-cast.md); how much to mix and melt: [5-pour.md](5-pour.md)."
+                .into(),
+        );
     }
     steps.push("Measure the parts against [ledger.md](ledger.md), then put them together.".into());
     steps

@@ -46,7 +46,7 @@ impl Assumption {
 
 /// Directions of one plane put into it, after those that agree were made one.
 pub(super) fn settled(directions: &[Direction]) -> (Vec<Direction>, Assumption) {
-    let one = alike(directions, |_| &[]);
+    let one = alike(directions, |_| &[], |_, _| true);
     let mut distinct: Vec<Direction> = Vec::new();
     let mut place: BTreeMap<[u64; 3], usize> = BTreeMap::new();
     let at: Vec<usize> = one
@@ -69,8 +69,13 @@ pub(super) fn settled(directions: &[Direction]) -> (Vec<Direction>, Assumption) 
 }
 
 /// Each direction replaced by the best known one that it cannot be told from, with its own sign; `apart` lists for each
-/// those that are known to be different ones. Best known first, ties by place.
-pub(super) fn alike<'a>(directions: &[Direction], apart: impl Fn(usize) -> &'a [usize]) -> Vec<Direction> {
+/// those that are known to be different ones, `fits` whether it may take another direction. Best known first, ties by
+/// place.
+pub(super) fn alike<'a>(
+    directions: &[Direction],
+    apart: impl Fn(usize) -> &'a [usize],
+    fits: impl Fn(usize, Direction) -> bool,
+) -> Vec<Direction> {
     let mut order: Vec<usize> = (0..directions.len()).collect();
     order.sort_by(|&i, &j| directions[i].known.total_cmp(&directions[j].known).then(i.cmp(&j)));
     let mut leader: Vec<usize> = (0..directions.len()).collect();
@@ -79,7 +84,8 @@ pub(super) fn alike<'a>(directions: &[Direction], apart: impl Fn(usize) -> &'a [
         let Direction { n, known } = Direction { n: upward(directions[i].n), ..directions[i] };
         let near = near(&leaders, n, 2.0 * known).filter(|&(k, d)| d <= known + directions[k].known);
         let other = |k: usize| apart(i).iter().any(|&j| leader[j] == k);
-        let best = near.filter(|&(k, _)| !other(k)).min_by(|x, y| x.1.total_cmp(&y.1).then(x.0.cmp(&y.0)));
+        let near = near.filter(|&(k, _)| !other(k) && fits(i, directions[k]));
+        let best = near.min_by(|x, y| x.1.total_cmp(&y.1).then(x.0.cmp(&y.0)));
         match best {
             Some((k, _)) => leader[i] = k,
             None => {
@@ -129,9 +135,11 @@ mod tests {
     #[test]
     fn what_cannot_be_told_apart_becomes_one_and_keeps_its_sign() {
         let dirs = known(1e-6, &[DVec3::X, DVec3::new(-1.0, 1e-6, 0.0), DVec3::new(1.0, 1e-3, 0.0)]);
-        let one = alike(&dirs, |_| &[]);
+        let one = alike(&dirs, |_| &[], |_, _| true);
         assert_eq!((one[0].n, one[1].n, one[2].n), (DVec3::X, -DVec3::X, dirs[2].n));
-        let two = alike(&dirs, |i| if i == 1 { &[0] } else { &[] });
+        let two = alike(&dirs, |i| if i == 1 { &[0] } else { &[] }, |_, _| true);
+        let none = alike(&dirs, |_| &[], |_, _| false);
+        assert_eq!(none[1].n, dirs[1].n, "does not fit");
         assert_eq!(two[1].n, dirs[1].n, "known to be another one");
     }
 

@@ -1,0 +1,87 @@
+//! Takes a package's answer; gives the mold sheet: for each mold how it opens, what it is made of, what was measured.
+//!
+//! Not promised: words for what the mold's own steps and figures do not say.
+
+use super::table::{short, table};
+use crate::mold::{Measured, MoldReport, Parting, Step, Volume, WrittenPiece};
+use crate::package::PackageReport;
+
+/// `None` where there is no mold.
+pub fn sheet(p: &PackageReport) -> Option<String> {
+    if p.mold_sheets.is_empty() {
+        return None;
+    }
+    let mut s = format!(
+        "# Mold sheet: {}\n\nAll files are in `molds/`, in millimetres, scale already applied: print at 100 %.\n",
+        p.report.name
+    );
+    for m in &p.mold_sheets {
+        s += &format!("\n## {} ({})\n\nFor: {}.\n", m.report.name, m.process, m.parts.join(", "));
+        s += &mold(&m.report);
+    }
+    Some(s)
+}
+
+fn mold(m: &MoldReport) -> String {
+    let d = m.pull.direction;
+    let mut s = format!(
+        "\nOpens along ({}, {}, {}) of the part as it stands in the assembly; {} of {} directions looked at need no less. Undercut: {} mm2, {} mm deep. Faces with less draft than asked for: {} mm2.\n",
+        short(d.x),
+        short(d.y),
+        short(d.z),
+        m.pull.search,
+        m.pull.candidates,
+        short(m.pull.undercut_mm2),
+        short(m.pull.undercut_reach_mm),
+        short(m.low_draft_mm2)
+    );
+    s += &match &m.parting {
+        Some(Parting::Plane { height_mm }) => {
+            format!("\nThe halves part in a plane, {} mm above the part's foot.\n", short(*height_mm))
+        }
+        Some(Parting::Stepped { height_mm, .. }) => format!(
+            "\nThe halves part in a stepped surface about {} mm above the part's foot.\n",
+            short(*height_mm)
+        ),
+        None => String::new(),
+    };
+    let piece = |w: &WrittenPiece| {
+        vec![
+            format!("`{}`", w.file),
+            format!("{:?}", w.kind).to_lowercase(),
+            w.copies.to_string(),
+            format!("{:.1}", w.volume_mm3 / 1000.0),
+        ]
+    };
+    s += &table(&["file", "", "print", "cm3"], m.pieces.iter().filter(|w| w.copies > 0).map(piece));
+    let volume = |v: &Volume| {
+        vec![
+            v.of.clone(),
+            format!("{:.2}", v.mm3 / 1000.0),
+            v.grams.map_or(String::new(), |g| format!("{g:.1}")),
+        ]
+    };
+    if !m.volumes.is_empty() {
+        s += &table(&["volume", "cm3", "g"], m.volumes.iter().map(volume));
+    }
+    let step = |(k, t): (usize, &Step)| {
+        let hours = t.hours.map_or(String::new(), |h| format!("{} h", short(h)));
+        let heat = t.celsius.map_or(String::new(), |c| format!("{} \u{b0}C", short(c)));
+        vec![(k + 1).to_string(), t.does.clone(), hours, heat, t.source.clone()]
+    };
+    if !m.steps.is_empty() {
+        s += &table(&["", "do", "for", "at", "source"], m.steps.iter().enumerate().map(step));
+    }
+    let measure = |v: &Measured| {
+        let kept = if v.kept { "kept" } else { "**missed**" };
+        vec![
+            v.of.clone(),
+            format!("{} {}", short(v.value), v.unit),
+            format!("{} {}", short(v.limit), v.unit),
+            kept.to_string(),
+        ]
+    };
+    s += &table(&["measured on the files", "found", "limit", ""], m.measured.iter().map(measure));
+    let others = m.files.iter().map(|f| format!("- `molds/{f}`\n")).collect::<String>();
+    s + "\n" + &others
+}

@@ -1,0 +1,157 @@
+//! Takes parts in place and their patches; gives the non-directional blocking graph (NDBG, Wilson and Latombe) for
+//! translations: the sphere of directions cut into regions, each with one directional blocking graph (DBG).
+//!
+//! Over the arrangement of all critical directions, none sampled; infinitesimal or for the whole way. Directions that
+//! differ by less than [`NEAR`] count as one, which is far above round-off: every sign beyond that is the exact one.
+//! Cost: about the square of the critical arcs; budgets are stated and what exceeds them is not run.
+//!
+//! Tried and left: whole great circles instead of arcs (a 2 x 2 window has thousands on the whole way, most of them
+//! critical nowhere); one arrangement of the edges of all free sectors (60,000 crossings for eight strands). So each pair
+//! gets an arrangement of its own first, and only what is critical there goes into that of all.
+//!
+//! Laws (tested):
+//! 1. What stops a part along a direction stops it along all directions near by: a graph on an edge or at a vertex has
+//!    no arc that the graphs around it lack.
+//! 2. The graph of -d is that of d with all arcs turned round.
+//! 3. Turning the assembly turns the regions and changes no graph.
+
+pub mod arrangement;
+pub mod between;
+pub mod circles;
+mod regions;
+
+pub use regions::{Graph, Region, components_and_leavers};
+
+use super::graph::Pairs;
+use super::shadow::Shapes;
+use super::{SAME_ANGLE, Touch};
+use crate::assembly::{Assembly, Mobility, PartIx};
+use crate::contact::Patch;
+use arrangement::{Arrangement, Critical, NoArrangement, arrangement};
+use between::{Between, Numbered, On, Place};
+use circles::Circles;
+use glam::DVec3;
+use rayon::prelude::*;
+
+/// Angle in radians below which two critical directions count as one: a corner of a free sector lies within
+/// [`SAME_ANGLE`] of each of two planes, so within four times that of where they cross unless they are nearly parallel.
+pub const NEAR: f64 = 4.0 * SAME_ANGLE;
+
+/// Which blocking: at the very start of a motion, or on the whole way to infinity.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Reach {
+    Infinitesimal,
+    Finite,
+}
+
+/// Pairs of cells beyond this are not put into each other's way: each costs up to 100 microseconds.
+pub const MOST_CELL_PAIRS: usize = 500_000;
+
+/// Arcs of all distinct graphs together beyond this are not kept: some hundred megabytes as an answer.
+pub const MOST_ARCS: usize = 5_000_000;
+
+/// Why there is no NDBG.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum NotRun {
+    #[error("part `{0}` is not made of convex cells, which blocking on the whole way needs")]
+    NoCells(String),
+    #[error("{found} pairs of cells, more than the {MOST_CELL_PAIRS} that are looked at")]
+    TooManyCells { found: usize },
+    #[error("{found} arcs in all blocking graphs, more than the {MOST_ARCS} that are kept")]
+    TooManyArcs { found: usize },
+    #[error(transparent)]
+    NoArrangement(#[from] NoArrangement),
+}
+
+/// The sphere of directions in regions.
+#[derive(Clone, Debug)]
+pub struct Ndbg {
+    pub parts: Vec<PartIx>,
+    pub held: Vec<PartIx>,
+    pub graphs: Vec<Graph>,
+    /// Largest dimension first.
+    pub regions: Vec<Region>,
+    /// Regions that bound one another, lower number first.
+    pub beside: Vec<(usize, usize)>,
+    pub circles: Circles,
+    pub arrangement: Arrangement,
+    /// The region of each face, edge and vertex of the arrangement.
+    pub region_of: [Vec<usize>; 3],
+    pairs: Vec<Numbered>,
+}
+
+/// The NDBG of all parts.
+pub fn ndbg(asm: &Assembly, patches: &[Patch], touching: &Pairs, reach: Reach) -> Result<Ndbg, NotRun> {
+    let found = match reach {
+        Reach::Infinitesimal => {
+            let part = touching.iter().filter(|((a, b), _)| !both_held(asm, *a, *b));
+            part.map(|(&(a, b), of)| touch(patches, a, b, of)).collect()
+        }
+        Reach::Finite => finite(asm, patches, touching)?,
+    };
+    let own: Vec<(Circles, Critical)> = found.par_iter().map(critical).collect::<Result<_, _>>()?;
+    let mut circles = Circles::default();
+    let mut all = Critical::default();
+    for (own, critical) in own {
+        all.join(critical.renumbered(&own, &mut circles));
+    }
+    let pairs = found.iter().map(|between| Numbered::new(between, &mut circles)).collect();
+    let arrangement = arrangement(&mut circles, all)?;
+    regions::regions(asm, pairs, circles, arrangement)
+}
+
+/// Where the blocking of one pair changes, with the circles of its own that this is told by.
+fn critical(between: &Between) -> Result<(Circles, Critical), NotRun> {
+    let mut own = Circles::default();
+    if between.free.is_empty() || between.cones.is_empty() {
+        return Ok((own, Critical::default()));
+    }
+    let pair = Numbered::new(between, &mut own);
+    let candidates = pair.candidates(&between.free, &mut own);
+    let arrangement = arrangement(&mut own, candidates)?;
+    let critical = regions::critical(&pair, &own, &arrangement);
+    Ok((own, critical))
+}
+
+fn touch(patches: &[Patch], a: PartIx, b: PartIx, of: &[usize]) -> Between {
+    let normals: Vec<DVec3> = of.iter().map(|&k| patches[k].normal).collect();
+    Between::touching(a, b, &normals)
+}
+
+fn both_held(asm: &Assembly, a: PartIx, b: PartIx) -> bool {
+    [a, b].iter().all(|&p| asm.part(p).mobility == Mobility::Held)
+}
+
+/// Every pair of parts, but two held ones, which keep their places.
+fn finite(asm: &Assembly, patches: &[Patch], touching: &Pairs) -> Result<Vec<Between>, NotRun> {
+    if let Some(p) = asm.parts.iter().find(|p| asm.solids[p.solid].cells.is_empty()) {
+        return Err(NotRun::NoCells(p.id.clone()));
+    }
+    let parts: Vec<PartIx> = asm.ids().collect();
+    let all = parts.iter().flat_map(|&a| parts[a.at() + 1..].iter().map(move |&b| (a, b)));
+    let all: Vec<_> = all.filter(|&(a, b)| !both_held(asm, a, b)).collect();
+    let cells = |p: PartIx| asm.solid(p).cells.len();
+    let count = all.iter().map(|&(a, b)| cells(a) * cells(b)).fold(0, usize::saturating_add);
+    if count > MOST_CELL_PAIRS {
+        return Err(NotRun::TooManyCells { found: count });
+    }
+    let (shapes, depth) = (Shapes::of(asm), Touch::of(asm));
+    let none = Vec::new();
+    let between = |&(a, b): &(PartIx, PartIx)| {
+        touch(patches, a, b, touching.get(&(a, b)).unwrap_or(&none)).with_cells(&shapes, depth)
+    };
+    Ok(all.par_iter().map(between).collect())
+}
+
+impl Ndbg {
+    /// The number of the graph along a unit direction that lies on no critical arc; none for a graph that no region has.
+    pub fn graph_along(&self, d: DVec3) -> Option<usize> {
+        let bits = regions::bits(&self.pairs, Place { d, on: On::Nothing });
+        self.graphs.binary_search_by(|g| g.bits.cmp(&bits)).ok()
+    }
+
+    /// Graphs that some directions have in which the parts are one strongly connected component.
+    pub fn connected(&self) -> usize {
+        self.graphs.iter().filter(|g| g.components.len() == 1).count()
+    }
+}

@@ -1,0 +1,93 @@
+//! Parts made otherwise: carved, by several routes, shaved; and what is told of their walls.
+
+use super::*;
+
+/// The exact move makes this tile cross itself; carving it does not.
+#[test]
+fn where_the_exact_move_fails_the_part_is_carved_and_its_gaps_are_kept() {
+    let job = woven("[1, 5, 3]", "wefts = 6\nwarps = 6\ncut = \"tiles\"", 6, 0.0);
+    let report = made(&job, &recipe(0.2));
+    assert_ne!(report.worst(), Some(Severity::Error), "{:#?}", report.findings);
+    assert!(report.parts.iter().all(|p| p.file.is_some()));
+    assert!(worst_gap(&report) >= 1.0);
+}
+
+#[test]
+fn parts_by_different_routes_have_their_own_scale_and_fit_when_finished() {
+    let job = woven("[1, 1, 1]", "wefts = 2\nwarps = 2\ncut = \"window\"", 6, 0.6);
+    let parts =
+        [("weft-0", "silicone-platinum"), ("warp-0", "aluminium-lost-wax"), ("warp-1", "wax-injected")]
+            .map(|(id, name)| (id.to_string(), Process::find(name).unwrap()));
+    let recipe = Recipe { parts: parts.into(), ..recipe(0.2) };
+    let report = made(&job, &recipe);
+    assert_ne!(report.worst(), Some(Severity::Error), "{:#?}", report.findings);
+    let scales: Vec<f64> = report.parts.iter().map(|p| p.scale).collect();
+    for (scale, expected) in scales.iter().zip([1.0030, 1.0020, 1.0312, 1.0183]) {
+        assert!((scale - expected).abs() < 5e-5, "{scales:?}");
+    }
+    let clearance = |id: &str| report.parts.iter().find(|p| p.id == id).unwrap().clearance_mm;
+    assert_eq!(report.gaps.len(), 6);
+    for gap in &report.gaps {
+        assert!((gap.promised_mm - clearance(&gap.a) - clearance(&gap.b)).abs() < 1e-12, "{gap:?}");
+        assert_eq!(gap.verdict, Verdict::Kept, "{gap:?}");
+    }
+    assert_eq!(report.routes.len(), 4);
+    assert_eq!(report.routes.iter().map(|r| r.ledger.last().unwrap().product).collect::<Vec<_>>(), scales);
+}
+
+#[test]
+fn a_process_for_a_part_that_is_not_there_is_refused() {
+    let parts = [("weft-9".to_string(), Process::find("sla").unwrap())].into();
+    let told = make(&solids::two_boxes(), &Recipe { parts, ..recipe(0.2) }, Path::new("never")).unwrap_err();
+    assert!(told.to_string().contains("weft-9") && told.to_string().contains("part-0"), "{told}");
+    assert!(!Path::new("never").exists());
+}
+
+#[test]
+fn a_thin_wall_and_a_sharp_edge_are_told_with_their_place() {
+    let job = solids::thin_plate();
+    let report = made(&job, &recipe(0.4));
+    let plate = &report.parts[1];
+    let thin = plate.wall.unwrap().thinnest.unwrap();
+    // A plate of 1 mm between two blocks loses 0.4 mm on the one face that touches, or on both.
+    let size = plate.read_back.high.unwrap() - plate.read_back.low.unwrap();
+    let expected = size.min_element() / plate.scale;
+    assert!((thin.thickness_mm - expected).abs() < 1e-4, "{thin:?} {expected}");
+    assert!(thin.thickness_mm < 0.8);
+    let told = report.findings.iter().find(|f| f.what.contains("a wall is")).unwrap();
+    assert_eq!((told.severity, told.place.at.len()), (Severity::Warning, 2));
+    let dovetail = made(&solids::two_boxes(), &recipe(0.2));
+    assert!(
+        dovetail
+            .parts
+            .iter()
+            .all(|p| p.wall.unwrap().thinnest.is_none() && p.wall.unwrap().sharpest.is_none())
+    );
+}
+
+#[test]
+fn the_print_face_is_flattened_and_chamfered_on_demand() {
+    let own = Overrides {
+        clearance: Some(0.2),
+        elephant_foot: Some(0.3),
+        flatten: Some(0.5),
+        ..Overrides::default()
+    };
+    let process = Process::find("fdm-pla").unwrap().with(&own).unwrap();
+    let shaved = made(&solids::two_boxes(), &Recipe { programs: None, ..Recipe::new(process) });
+    let plain = made(&solids::two_boxes(), &recipe(0.2));
+    assert_ne!(shaved.worst(), Some(Severity::Error), "{:#?}", shaved.findings);
+    for (s, p) in shaved.parts.iter().zip(&plain.parts) {
+        let (size, k) = (p.read_back.high.unwrap() - p.read_back.low.unwrap(), p.scale);
+        let foot = {
+            let mut sides = size.to_array();
+            sides.sort_by(f64::total_cmp);
+            [sides[1], sides[2]]
+        };
+        let rim = 0.3_f64.powi(2) * (foot[0] + foot[1]) - 4.0 / 3.0 * 0.3_f64.powi(3);
+        let expected = foot[0] * foot[1] * 0.5 + rim;
+        let gone = p.read_back.volume_mm3.unwrap() - s.read_back.volume_mm3.unwrap();
+        assert!((gone - expected).abs() < 0.02, "{gone} {expected} {k}");
+        assert_eq!(s.read_back.watertight, Some(true));
+    }
+}

@@ -1,0 +1,145 @@
+//! Files of processes: those that come along are sound, copies can be edited, nonsense is refused with its reason.
+
+use weavelock_fab::process::{Measured, Overrides, Process, Route, bed, beds, names, source};
+
+/// What is wrong with a file, as a user is told it.
+fn told(text: &str) -> String {
+    Process::parse("my.toml", text).expect_err("accepted").to_string()
+}
+
+/// The text of a process with something replaced, which has to be there.
+fn edited(name: &str, from: &str, to: &str) -> String {
+    let text = source(name).expect("a process");
+    assert!(text.contains(from), "{name} has no {from:?}");
+    text.replacen(from, to, 1)
+}
+
+#[test]
+fn every_process_that_comes_along_is_sound_and_says_where_its_numbers_come_from() {
+    let all: Vec<Process> = names().map(|n| Process::find(n).unwrap_or_else(|e| panic!("{e}"))).collect();
+    for name in [
+        "fdm-pla",
+        "fdm-petg",
+        "sla",
+        "silicone-platinum",
+        "silicone-tin",
+        "wax-injected",
+        "wax-poured",
+        "aluminium-lost-wax",
+        "aluminium-lost-pla",
+        "pu-resin",
+    ] {
+        assert!(all.iter().any(|p| p.name == name), "{name}");
+    }
+    for p in &all {
+        assert_eq!(p.cavity.is_none(), p.route == Route::Print, "{}", p.name);
+        assert!(!p.schedule.is_empty(), "{}", p.name);
+        let figures =
+            p.schedule.iter().filter_map(|i| i.figure.as_ref()).chain([&p.clearance, &p.least_wall]);
+        assert!(figures.into_iter().all(|f| f.source.len() > 5), "{}", p.name);
+    }
+    assert!(beds().len() >= 5);
+}
+
+#[test]
+fn nonsense_is_refused_with_line_and_reason() {
+    let bad = [
+        (edited("fdm-pla", "value = 0.2\nunit = \"%\"", "value = 80\nunit = \"%\""), "80 % is not possible"),
+        (edited("fdm-pla", "value = 0.8", "value = -0.8"), "-0.8 mm is not possible"),
+        (edited("fdm-pla", "title =", "titel ="), "unknown key \"titel\""),
+        (
+            edited("wax-poured", "material = \"silicone\"", "material = \"PLA\""),
+            "PLA, which bears no more than 45 C",
+        ),
+        (
+            edited("wax-injected", "material = \"silicone\"", "material = \"PETG\""),
+            "PETG, which bears no more than 58 C",
+        ),
+        (
+            edited(
+                "silicone-platinum",
+                "value = 0.1\nunit = \"%\"\nlow = 0.0\nhigh = 0.1",
+                "value = 3\nunit = \"%\"\nlow = 2\nhigh = 4",
+            ),
+            "heat-cured silicone",
+        ),
+        (
+            edited(
+                "silicone-tin",
+                "material = \"tin-cure RTV silicone\"",
+                "material = \"heat-cured silicone\"",
+            ),
+            "is heat-cured",
+        ),
+        (edited("aluminium-lost-wax", "name = \"wax\"", "name = \"investment\""), "is net"),
+        (edited("aluminium-lost-wax", "name = \"wax\"", "name = \"silicone\""), "two steps are called"),
+        (edited("fdm-pla", "bed = \"prusa-mk4\"", "bed = \"my bed\""), "no bed \"my bed\""),
+        (edited("fdm-pla", "unit = \"mm\"", "unit = \"in\""), "one of: mm"),
+        (edited("sla", "route = \"print\"", "route = \"forge\""), "one of: print, cast-direct"),
+        (edited("pu-resin", "high = 1.20", "high = 0.2"), "are not in order"),
+        (edited("wax-injected", "unit = \"kPa\"", "unit = \"bar\""), "one of: C, h, min"),
+    ];
+    for (text, word) in bad {
+        let told = told(&text);
+        assert!(told.contains(word), "{word} is not in {told}");
+        assert!(told.starts_with("my.toml:") && told.contains("hint: "), "{told}");
+        assert!(
+            told.split(':').nth(1).is_some_and(|line| line.parse::<usize>().is_ok_and(|l| l > 0)),
+            "{told}"
+        );
+    }
+}
+
+#[test]
+fn all_faults_of_a_file_are_told_at_once() {
+    let text = edited("wax-poured", "material = \"silicone\"", "material = \"PLA\"")
+        .replacen("value = 0.15", "value = -1", 1)
+        .replacen("supports", "support", 1)
+        .replacen("grade = \"S\"", "grade = \"Z\"", 1);
+    let told = told(&text);
+    for word in
+        ["bears no more", "-1 mm", "unknown key \"support\"", "\"supports\" is missing", "one of: S, 2, I, M"]
+    {
+        assert!(told.contains(word), "{word} is not in {told}");
+    }
+}
+
+#[test]
+fn the_coupon_replaces_the_figure_of_each_step_that_was_measured() {
+    let wax = Process::find("wax-injected").unwrap();
+    let with = |texts: &[&str]| {
+        let measured = texts.iter().map(|t| Measured::parse(t).unwrap()).collect();
+        wax.with(&Overrides { measured, ..Overrides::default() })
+    };
+    let steps = |p: &Process| p.steps.iter().map(|s| s.shrinkage.value).collect::<Vec<_>>();
+    let p = with(&["print=59.70", "wax=58.80 mm"]).unwrap();
+    // Before the wax there is the silicone, which was not measured: 59.70 less a thousandth.
+    let expected = [0.5, 0.1, 100.0 * (1.0 - 58.80 / (59.70 * 0.999))];
+    assert!(steps(&p).iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-9), "{:?}", steps(&p));
+    assert!(p.steps[0].shrinkage.source.contains("59.7"));
+    let told = with(&["print=40", "metal=58"]).unwrap_err().to_string();
+    assert!(told.contains("print of 33.3") && told.contains("step \"metal\""), "{told}");
+    for bad in ["print", "print=", "=59", "print=long", "print=inf"] {
+        assert!(Measured::parse(bad).is_err(), "{bad}");
+    }
+}
+
+#[test]
+fn beds_go_by_name_or_by_size() {
+    assert_eq!(bed("prusa-mk4").unwrap().size, [250.0, 210.0, 220.0]);
+    for text in ["300 x 300 x 400 mm", "300x300x400", "300 X 300 \u{d7} 400"] {
+        assert_eq!(bed(text).unwrap().size, [300.0, 300.0, 400.0], "{text}");
+    }
+    for text in [
+        "",
+        "prusa",
+        "300 x 300",
+        "300 x 300 x -1",
+        "300 x 300 x nan",
+        "1 x 1 x 1",
+        "1e9 x 1 x 1",
+        "3 x 3 x 3 x 3",
+    ] {
+        assert!(bed(text).unwrap_err().contains("prusa-mk4"), "{text}");
+    }
+}
