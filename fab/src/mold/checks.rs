@@ -134,7 +134,9 @@ fn sweeps(mold: &Mold, h: &Halves) -> Vec<Measured> {
 fn channels(mold: &Mold, h: &Halves) -> Vec<Measured> {
     let trees = [h.lower, h.upper].map(|m| (m, Bvh::new(m)));
     let all = || mold.plan.sprues.iter().chain(&mold.plan.vents);
-    let shut = all().filter(|c| trees.iter().any(|(m, t)| ray::any((m, t), c.foot, DVec3::Z, 0.0))).count();
+    let shut = all()
+        .filter(|c| trees.iter().any(|(m, t)| ray::any((m, t), c.foot, DVec3::Z, FLOOR_IN_SNAPS * mold.snap)))
+        .count();
     let reaches = all().filter(|c| c.foot.z + c.height < mold.plan.high.z - mold.snap).count();
     let airless = mold.tops.iter().filter(|t| !vented(mold, t)).count();
     vec![
@@ -154,6 +156,9 @@ fn channels(mold: &Mold, h: &Halves) -> Vec<Measured> {
         ),
     ]
 }
+
+/// A ray starts on its channel's floor, which the file may have put this many snaps higher.
+const FLOOR_IN_SNAPS: f64 = 4.0;
 
 fn vented(mold: &Mold, top: &Top) -> bool {
     let near = |at: DVec3| at.truncate().distance(top.at.truncate()) <= mold.figures.vent_spacing.value;
