@@ -5,8 +5,8 @@
 //! shape -> offset { body -> weld -> split -> settle -> relief } -> ledger (scale) -> files -> gap, wall -> check -> report -> package
 //! ```
 //!
-//! `make` goes through all of it. Not promised: molds, and walls against the least wall of a process; both are said in
-//! the report.
+//! `make` goes through all of it; `mold` makes the mold of one part, by the booleans of `solid`, and `package` puts molds
+//! to the parts that need one. Not promised: that every wall keeps the least wall of a process; where one does not is said.
 
 pub mod bvh;
 pub mod check;

@@ -82,6 +82,13 @@ fn volumes(mold: &Mold, h: &Halves, tools: &Tools) -> Result<Vec<Measured>, NotS
             "round-off of the files: surface times one snap",
         ),
         Measured::at_most(
+            "what the halves share with the part",
+            lower.common(&part).volume() + upper.common(&part).volume(),
+            volume_round_off(area, mold.snap),
+            "mm3",
+            "round-off of the files: surface times one snap",
+        ),
+        Measured::at_most(
             "halves, part and channels against the block",
             (sum - block.volume()).abs(),
             allowed,
@@ -95,7 +102,8 @@ fn turned_over(m: &Mesh) -> Mesh {
     m.map(|v| DVec3::new(v.x, -v.y, -v.z))
 }
 
-/// Each half moved out along its pull, without end: what of the part and of the other half it would hit.
+/// Each half moved out along its pull, without end: what of the part and of the other half it would hit. That they share
+/// nothing to begin with is measured by `volumes`.
 fn sweeps(mold: &Mold, h: &Halves) -> Vec<Measured> {
     let hits = |name: &str, mover: &Mesh, still: &Mesh| {
         let b = shadow::blocked(&Side::of(mover, 1.0), &Side::of(still, -1.0), mold.snap);
@@ -114,7 +122,7 @@ fn sweeps(mold: &Mold, h: &Halves) -> Vec<Measured> {
         hits("lower half leaves the part: width that it hits", &lower, &part),
         hits("upper half leaves the lower: width that it hits", h.upper, h.lower),
     ];
-    if mold.pull.undercut_reach_mm > 0.0 {
+    if mold.filled_mm3.is_none() {
         let why = "undercut that still snaps out of a rigid mold";
         for m in &mut all[..2] {
             *m = Measured::at_most(m.of.clone(), m.value, mold.figures.snap.value, "mm", why);
@@ -126,7 +134,9 @@ fn sweeps(mold: &Mold, h: &Halves) -> Vec<Measured> {
 fn channels(mold: &Mold, h: &Halves) -> Vec<Measured> {
     let trees = [h.lower, h.upper].map(|m| (m, Bvh::new(m)));
     let all = || mold.plan.sprues.iter().chain(&mold.plan.vents);
-    let shut = all().filter(|c| trees.iter().any(|(m, t)| ray::any((m, t), c.foot, DVec3::Z, 0.0))).count();
+    let shut = all()
+        .filter(|c| trees.iter().any(|(m, t)| ray::any((m, t), c.foot, DVec3::Z, FLOOR_IN_SNAPS * mold.snap)))
+        .count();
     let reaches = all().filter(|c| c.foot.z + c.height < mold.plan.high.z - mold.snap).count();
     let airless = mold.tops.iter().filter(|t| !vented(mold, t)).count();
     vec![
@@ -146,6 +156,9 @@ fn channels(mold: &Mold, h: &Halves) -> Vec<Measured> {
         ),
     ]
 }
+
+/// A ray starts on its channel's floor, which the file may have put this many snaps higher.
+const FLOOR_IN_SNAPS: f64 = 4.0;
 
 fn vented(mold: &Mold, top: &Top) -> bool {
     let near = |at: DVec3| at.truncate().distance(top.at.truncate()) <= mold.figures.vent_spacing.value;

@@ -85,6 +85,7 @@ pub fn blank(ready: &Ready, spec: &MoldSpec, plan: Plan, draft: f64) -> Mold {
         part: mesh,
         snap,
         parting: Some(parting),
+        filled_mm3: None,
         pieces: vec![],
         extras: vec![],
         volumes: vec![],

@@ -29,6 +29,7 @@ pub fn mold(ready: Ready, spec: &MoldSpec) -> Result<Mold, MoldError> {
     let snap = ready.framed.snap;
     let (cavity, grown) = filled(&ready)?;
     let mut mold = blank(&ready, spec, plan, spec.figures.draft.value);
+    mold.filled_mm3 = grown;
     let stuck = ready.pull.undercut_reach_mm > spec.figures.snap.value && grown.is_none();
     mold.findings.extend(undercut_finding(&mold, grown, stuck));
     mold.extras.push(pictures::maps(&mold));

@@ -195,6 +195,8 @@ pub struct Mold {
     /// How far f32 may move a coordinate of a file, mm.
     pub snap: f64,
     pub parting: Option<Parting>,
+    /// What undercuts below the cavity's tolerance took to fill, mm3 (0 where there are none); `None` where they stay.
+    pub filled_mm3: Option<f64>,
     pub maps: Maps,
     pub pieces: Vec<Piece>,
     pub extras: Vec<Extra>,
@@ -239,6 +241,7 @@ pub struct MoldReport {
     pub route: Route,
     pub pull: Pull,
     pub parting: Option<Parting>,
+    pub filled_mm3: Option<f64>,
     pub low_draft_mm2: f64,
     pub pieces: Vec<WrittenPiece>,
     pub files: Vec<String>,

@@ -80,6 +80,7 @@ fn report(mold: &Mold, back: &[Mesh]) -> MoldReport {
         route: mold.route,
         pull: mold.pull.clone(),
         parting: mold.parting.clone(),
+        filled_mm3: mold.filled_mm3,
         low_draft_mm2: mold.maps.low_draft_mm2,
         pieces,
         files,
