@@ -209,8 +209,11 @@ fn processes_that_come_along_are_sound_and_others_are_refused_with_all_faults() 
     assert!(faults.iter().any(|f| f.line == line && f.what.contains("titel")), "{told}");
     let unknown = Process::find("fdm-plaa").unwrap_err().to_string();
     assert!(unknown.contains("fdm-pla, fdm-petg"), "{unknown}");
-    let own =
-        Overrides { clearance: Some(-1.0), shrinkage: [("print".into(), 80.0), ("cast".into(), 1.0)].into() };
+    let own = Overrides {
+        clearance: Some(-1.0),
+        shrinkage: [("print".into(), 80.0), ("cast".into(), 1.0)].into(),
+        ..Overrides::default()
+    };
     let told = Process::find("sla").unwrap().with(&own).unwrap_err().to_string();
     assert_eq!(told.lines().count(), 3, "{told}");
 }
