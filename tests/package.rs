@@ -233,7 +233,7 @@ fn what_is_asked_wrongly_is_refused_all_at_once_and_writes_nothing() {
         (vec!["--measured", "wax=59"], vec!["\"wax\"", "print"]),
         (vec!["--bed", "table"], vec!["no bed", "prusa-mk4"]),
         (vec!["--flatten", "9 mm"], vec!["flatten of 9 mm"]),
-        (vec!["--clearance", "0.2"], vec!["no unit"]),
+        (vec!["--clearance", "0.2"], vec!["with its unit"]),
     ];
     for (more, words) in bad {
         let out = ran(&[&["fab", &plain(), "--out", "p"][..], &more].concat(), &at);

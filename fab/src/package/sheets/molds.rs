@@ -25,12 +25,12 @@ pub fn sheet(p: &PackageReport) -> Option<String> {
 fn mold(m: &MoldReport) -> String {
     let d = m.pull.direction;
     let mut s = format!(
-        "\nOpens along ({}, {}, {}) of the part as it stands in the assembly; {} of {} directions looked at need no less. Undercut: {} mm2, {} mm deep. Faces with less draft than asked for: {} mm2.\n",
+        "\nOpens along ({}, {}, {}) of the part as it stands in the assembly. {} directions were looked at: {}. Undercut: {} mm2, {} mm deep. Faces with less draft than asked for: {} mm2.\n",
         short(d.x),
         short(d.y),
         short(d.z),
-        m.pull.search,
         m.pull.candidates,
+        m.pull.search,
         short(m.pull.undercut_mm2),
         short(m.pull.undercut_reach_mm),
         short(m.low_draft_mm2)
