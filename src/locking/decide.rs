@@ -3,6 +3,7 @@
 //! Works on few rows at a time: forces on some rows that balance, with full rank, prove the lock for all; a motion is
 //! tested on all rows and the rows that it breaks join. Sound up to [`ROUND_OFF`]; not complete (undecided).
 
+use super::again;
 use super::interior::{Found, Rank, rank, search};
 use super::reduce::{kept, outermost, pair, turned};
 use super::rows::{Freedom, Row, Unknowns};
@@ -78,15 +79,19 @@ pub struct Gap {
     pub size: f64,
 }
 
-fn undecided(why: impl Into<String>, size: f64) -> Verdict {
+pub(super) fn undecided(why: impl Into<String>, size: f64) -> Verdict {
     Verdict::Undecided(Gap { why: why.into(), size })
 }
 
 /// Locked, free or undecided over these rows.
 pub fn decide(rows: &[Row], unknowns: &Unknowns) -> Verdict {
-    match unknowns.freedom {
+    let verdict = match unknowns.freedom {
         Freedom::Translation => Question::<3> { rows, unknowns }.decide(),
         Freedom::Rigid => Question::<6> { rows, unknowns }.decide(),
+    };
+    match verdict {
+        Verdict::Undecided(_) if unknowns.count <= again::MOST_UNKNOWNS => again::decide(rows, unknowns),
+        verdict => verdict,
     }
 }
 
@@ -224,7 +229,7 @@ enum Answer {
     Is(Verdict),
 }
 
-fn twists(unknowns: &Unknowns, x: &[f64]) -> Vec<(PartIx, Twist)> {
+pub(super) fn twists(unknowns: &Unknowns, x: &[f64]) -> Vec<(PartIx, Twist)> {
     let of = |(part, column): (usize, &Option<usize>)| {
         let c = (*column)?;
         let own = &x[c..c + unknowns.freedom.unknowns()];

@@ -4,13 +4,16 @@
 //! which is bounded and stated (`verify` re-checks without this module). Not complete: numbers near a boundary give
 //! undecided.
 
+mod again;
 mod decide;
+mod dense;
 mod factor;
 mod interior;
 pub mod margin;
 mod order;
 mod reduce;
 mod rows;
+mod solve;
 mod sparse;
 mod system;
 mod vouch;
