@@ -50,6 +50,13 @@ impl Shapes {
     }
 }
 
+impl Shapes {
+    /// The number of the part's solid in its orientation: parts of one number differ by a translation.
+    pub fn shape(&self, p: PartIx) -> usize {
+        self.place[p.at()].0
+    }
+}
+
 fn turn(cell: &crate::solid::Cell, m: DMat3) -> Convex {
     Convex {
         vertices: cell.vertices.iter().map(|&v| m * v).collect(),

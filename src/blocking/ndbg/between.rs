@@ -14,6 +14,7 @@ use crate::blocking::{SAME_ANGLE, Touch, bounds};
 use glam::DVec3;
 use std::collections::BTreeSet;
 use std::f64::consts::PI;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Which parts, which cones block the first from moving through the second, and what is free.
 #[derive(Clone, Debug)]
@@ -34,10 +35,10 @@ impl Between {
     }
 
     /// What is left free when the cells of the two are in each other's way, too. Cells that are near come first; cones that
-    /// take nothing away from what those before left free are dropped.
-    pub fn with_cells(mut self, shapes: &Shapes, touch: Touch) -> Between {
+    /// take nothing away from what those before left free are dropped. None when the work runs out first.
+    pub fn with_cells(mut self, shapes: &Shapes, touch: Touch, work: &Work) -> Option<Between> {
         if self.free.is_empty() {
-            return self;
+            return Some(self);
         }
         let ((cells_a, at_a), (cells_b, at_b)) = (shapes.part(self.a), shapes.part(self.b));
         let step = at_b - at_a;
@@ -48,18 +49,22 @@ impl Between {
             all.map(|(i, j)| (balls_a[i].toward(&balls_b[j], step), i, j)).collect();
         caps.sort_by(|x, y| y.0.angle.total_cmp(&x.0.angle).then((x.1, x.2).cmp(&(y.1, y.2))));
         for (cap, i, j) in caps {
-            if self.free.iter().any(|s| cap.meets(s)) {
-                self.take(Blocked::by_cells(&cells_a[i], &cells_b[j], step, touch.depth()));
+            work.spend(self.free.len())?;
+            let near: Vec<bool> = self.free.iter().map(|s| cap.meets(s)).collect();
+            if near.contains(&true) {
+                work.spend(cells_a[i].vertices.len() * cells_b[j].vertices.len())?;
+                self.take(Blocked::by_cells(&cells_a[i], &cells_b[j], step, touch.depth()), &near);
             }
         }
-        self
+        Some(self)
     }
 
-    fn take(&mut self, cone: Blocked) {
+    /// `near`: the free sectors that the cone may have a direction in common with.
+    fn take(&mut self, cone: Blocked, near: &[bool]) {
         if never(&cone) {
             return;
         }
-        let bitten: Vec<bool> = self.free.iter().map(|s| bites(&cone, s)).collect();
+        let bitten: Vec<bool> = self.free.iter().zip(near).map(|(s, &n)| n && bites(&cone, s)).collect();
         if !bitten.contains(&true) {
             return;
         }
@@ -119,8 +124,29 @@ impl Cap {
     }
 }
 
+/// Steps that may still be taken: a free sector looked at, or a difference between two corners. Shared among threads;
+/// whether it runs out depends on their sum alone, so not on their order.
+pub struct Work(AtomicUsize);
+
+impl Work {
+    pub fn new(most: usize) -> Work {
+        Work(AtomicUsize::new(most))
+    }
+
+    /// None when fewer are left.
+    fn spend(&self, steps: usize) -> Option<()> {
+        let less = |left: usize| left.checked_sub(steps);
+        let spent = self.0.fetch_update(Ordering::Relaxed, Ordering::Relaxed, less);
+        spent.is_ok().then_some(())
+    }
+}
+
 /// Whether the open cone and the sector have a direction in common.
 fn bites(cone: &Blocked, sector: &Sector) -> bool {
+    let beyond = |n: &DVec3| sector.corners().iter().all(|c| n.dot(*c) <= 0.0);
+    if cone.0.iter().any(beyond) {
+        return false;
+    }
     let rest = cone.0.iter().try_fold(sector.clone(), |s, &n| s.cut(n, Keep::Above));
     rest.is_some_and(|s| cone.0.iter().all(|n| n.dot(s.middle()) > SAME_ANGLE))
 }

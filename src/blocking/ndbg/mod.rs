@@ -28,10 +28,11 @@ use super::{SAME_ANGLE, Touch};
 use crate::assembly::{Assembly, Mobility, PartIx};
 use crate::contact::Patch;
 use arrangement::{Arrangement, Critical, NoArrangement, arrangement};
-use between::{Between, Numbered, On, Place};
+use between::{Between, Numbered, On, Place, Work};
 use circles::Circles;
 use glam::DVec3;
 use rayon::prelude::*;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Angle in radians below which two critical directions count as one: a corner of a free sector lies within
 /// [`SAME_ANGLE`] of each of two planes, so within four times that of where they cross unless they are nearly parallel.
@@ -44,8 +45,12 @@ pub enum Reach {
     Finite,
 }
 
-/// Pairs of cells beyond this are not put into each other's way: each costs up to 100 microseconds.
+/// Pairs of cells, counted once for congruent pairs of parts, beyond this are not put into each other's way: each costs up to 100 microseconds.
 pub const MOST_CELL_PAIRS: usize = 500_000;
+
+/// Steps of the free sectors' making beyond this are not taken: each costs some tens of nanoseconds, a bite out of a
+/// sector some microseconds.
+pub const MOST_STEPS: usize = 100_000_000;
 
 /// Arcs of all distinct graphs together beyond this are not kept: some hundred megabytes as an answer.
 pub const MOST_ARCS: usize = 5_000_000;
@@ -57,6 +62,8 @@ pub enum NotRun {
     NoCells(String),
     #[error("{found} pairs of cells, more than the {MOST_CELL_PAIRS} that are looked at")]
     TooManyCells { found: usize },
+    #[error("more than {MOST_STEPS} steps to find what the pairs of parts leave free")]
+    TooManySteps,
     #[error("{found} arcs in all blocking graphs, more than the {MOST_ARCS} that are kept")]
     TooManyArcs { found: usize },
     #[error(transparent)]
@@ -130,17 +137,39 @@ fn finite(asm: &Assembly, patches: &[Patch], touching: &Pairs) -> Result<Vec<Bet
     let parts: Vec<PartIx> = asm.ids().collect();
     let all = parts.iter().flat_map(|&a| parts[a.at() + 1..].iter().map(move |&b| (a, b)));
     let all: Vec<_> = all.filter(|&(a, b)| !both_held(asm, a, b)).collect();
+    let (shapes, depth) = (Shapes::of(asm), Touch::of(asm));
+    let none = Vec::new();
+    let starts: Vec<Between> =
+        all.iter().map(|&(a, b)| touch(patches, a, b, touching.get(&(a, b)).unwrap_or(&none))).collect();
+    let keys: Vec<Congruent> = starts.iter().map(|start| congruent(start, &shapes)).collect();
+    let mut first: BTreeMap<&Congruent, usize> = BTreeMap::new();
+    for (k, key) in keys.iter().enumerate() {
+        first.entry(key).or_insert(k);
+    }
     let cells = |p: PartIx| asm.solid(p).cells.len();
-    let count = all.iter().map(|&(a, b)| cells(a) * cells(b)).fold(0, usize::saturating_add);
+    let pairs = first.values().map(|&k| cells(all[k].0) * cells(all[k].1));
+    let count = pairs.fold(0, usize::saturating_add);
     if count > MOST_CELL_PAIRS {
         return Err(NotRun::TooManyCells { found: count });
     }
-    let (shapes, depth) = (Shapes::of(asm), Touch::of(asm));
-    let none = Vec::new();
-    let between = |&(a, b): &(PartIx, PartIx)| {
-        touch(patches, a, b, touching.get(&(a, b)).unwrap_or(&none)).with_cells(&shapes, depth)
-    };
-    Ok(all.par_iter().map(between).collect())
+    let work = Work::new(MOST_STEPS);
+    let made: Option<BTreeMap<&Congruent, Between>> = first
+        .into_par_iter()
+        .map(|(key, k)| Some((key, starts[k].clone().with_cells(&shapes, depth, &work)?)))
+        .collect();
+    let made = made.ok_or(NotRun::TooManySteps)?;
+    Ok(all.iter().zip(&keys).map(|(&(a, b), key)| Between { a, b, ..made[key].clone() }).collect())
+}
+
+/// Solids in orientation, the way from one to the other and the normals of their patches, to the last bit: pairs that
+/// agree in all of them have the same free directions.
+type Congruent = ([usize; 2], [u64; 3], BTreeSet<[u64; 3]>);
+
+fn congruent(pair: &Between, shapes: &Shapes) -> Congruent {
+    let bits = |v: DVec3| v.to_array().map(f64::to_bits);
+    let step = shapes.part(pair.b).1 - shapes.part(pair.a).1;
+    let normals = pair.cones.iter().flat_map(|cone| cone.0.iter().map(|&n| bits(n)));
+    ([pair.a, pair.b].map(|p| shapes.shape(p)), bits(step), normals.collect())
 }
 
 impl Ndbg {

@@ -5,6 +5,7 @@
 
 use super::image::{BadSize, Image, Size};
 use super::strokes;
+use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::io;
 
@@ -125,10 +126,7 @@ struct Raster {
 impl Raster {
     fn mark(&mut self, mark: &Mark) {
         match mark {
-            Mark::Fill { points, ink } => {
-                let pixels = self.pixels(points);
-                self.cover(&pixels, 1.0, *ink, |p| inside(&pixels, p));
-            }
+            Mark::Fill { points, ink } => self.fill(points, *ink),
             Mark::Line { points, ink, width } => self.line(points, *ink, *width),
             Mark::Words { at, size, anchor, ink, text } => {
                 let along = match anchor {
@@ -150,29 +148,57 @@ impl Raster {
         points.iter().map(|p| p.map(|c| c * self.scale)).collect()
     }
 
-    /// A line with round ends and joints.
+    /// A line with round ends and joints; a pixel near several of its pieces is covered by the nearest alone.
     fn line(&mut self, points: &[[f64; 2]], ink: Rgb, width: f64) {
         let pixels = self.pixels(points);
         let radius = width * self.scale / 2.0;
-        self.cover(&pixels, radius + 1.0, ink, |p| radius - distance(&pixels, p));
-    }
-
-    /// Mixes ink into the pixels around the points; `depth`: how far a pixel's middle lies inside, in pixels.
-    fn cover(&mut self, points: &[[f64; 2]], margin: f64, ink: Rgb, depth: impl Fn([f64; 2]) -> f64) {
-        let range = |d: usize, end: u32| {
-            let least = points.iter().map(|p| p[d]).fold(f64::INFINITY, f64::min) - margin;
-            let most = points.iter().map(|p| p[d]).fold(f64::NEG_INFINITY, f64::max) + margin;
-            (least.max(0.0) as u32)..(most.max(0.0).ceil() as u32).min(end)
-        };
-        for y in range(1, self.size.height()) {
-            for x in range(0, self.size.width()) {
-                let cover = (0.5 + depth([f64::from(x) + 0.5, f64::from(y) + 0.5])).clamp(0.0, 1.0) as f32;
-                let at = (y as usize * self.size.width() as usize + x as usize) * 3;
-                for (d, channel) in ink.iter().enumerate() {
-                    let full = f32::from(*channel) / 255.0;
-                    self.rgb[at + d] += cover * (full - self.rgb[at + d]);
+        let mut cover: BTreeMap<(usize, usize), f64> = BTreeMap::new();
+        for piece in pixels.windows(pixels.len().clamp(1, 2)) {
+            let (a, b) = (piece[0], piece[piece.len() - 1]);
+            let range = |d: usize, end: u32| {
+                let (least, most) = (a[d].min(b[d]) - radius - 1.0, a[d].max(b[d]) + radius + 1.0);
+                least.max(0.0) as usize..(most.max(0.0).ceil() as usize).min(end as usize)
+            };
+            for y in range(1, self.size.height()) {
+                for x in range(0, self.size.width()) {
+                    let depth = radius - distance(a, b, [x as f64 + 0.5, y as f64 + 0.5]);
+                    let most = cover.entry((y, x)).or_insert(0.0);
+                    *most = most.max((0.5 + depth).clamp(0.0, 1.0));
                 }
             }
+        }
+        cover.into_iter().for_each(|((y, x), share)| self.mix(x, y, share, ink));
+    }
+
+    /// What an odd number of turns of the outline goes around: any outline, convex or not, corners repeated or not.
+    fn fill(&mut self, points: &[[f64; 2]], ink: Rgb) {
+        let pixels = self.pixels(points);
+        let least = pixels.iter().map(|p| p[1]).fold(f64::INFINITY, f64::min).max(0.0) as usize;
+        let most = pixels.iter().map(|p| p[1]).fold(0.0, f64::max).ceil() as usize;
+        let width = self.size.width() as usize;
+        for y in least..most.min(self.size.height() as usize) {
+            let mut cover = vec![0.0; width];
+            for row in 0..ROWS {
+                let height = y as f64 + (row as f64 + 0.5) / ROWS as f64;
+                for ends in crossings(&pixels, height).chunks_exact(2) {
+                    let (from, to) = (ends[0].max(0.0), ends[1].min(width as f64));
+                    for (x, share) in
+                        cover.iter_mut().enumerate().take(to.ceil() as usize).skip(from as usize)
+                    {
+                        *share += (to.min(x as f64 + 1.0) - from.max(x as f64)).max(0.0) / ROWS as f64;
+                    }
+                }
+            }
+            let seen = cover.into_iter().enumerate().filter(|(_, share)| *share > 0.0);
+            seen.for_each(|(x, share)| self.mix(x, y, share, ink));
+        }
+    }
+
+    /// Ink over a share of a pixel.
+    fn mix(&mut self, x: usize, y: usize, share: f64, ink: Rgb) {
+        let at = (y * self.size.width() as usize + x) * 3;
+        for (d, channel) in ink.iter().enumerate() {
+            self.rgb[at + d] += share as f32 * (f32::from(*channel) / 255.0 - self.rgb[at + d]);
         }
     }
 
@@ -184,28 +210,25 @@ impl Raster {
     }
 }
 
-/// Distance of a point from a broken line.
-fn distance(points: &[[f64; 2]], p: [f64; 2]) -> f64 {
-    let to = |a: [f64; 2], b: [f64; 2]| {
-        let (d, e) = ([b[0] - a[0], b[1] - a[1]], [p[0] - a[0], p[1] - a[1]]);
-        let length = d[0] * d[0] + d[1] * d[1];
-        let t = if length > 0.0 { ((d[0] * e[0] + d[1] * e[1]) / length).clamp(0.0, 1.0) } else { 0.0 };
-        (e[0] - t * d[0]).hypot(e[1] - t * d[1])
+/// Lines across each row of pixels along which a fill's ends are taken.
+const ROWS: usize = 4;
+
+/// Where a closed outline crosses a height, rising; an even number.
+fn crossings(points: &[[f64; 2]], height: f64) -> Vec<f64> {
+    let side = |k: usize| {
+        let (a, b) = (points[k], points[(k + 1) % points.len()]);
+        let crosses = (a[1] <= height) != (b[1] <= height);
+        crosses.then(|| a[0] + (height - a[1]) / (b[1] - a[1]) * (b[0] - a[0]))
     };
-    match points {
-        [only] => to(*only, *only),
-        _ => points.windows(2).map(|w| to(w[0], w[1])).fold(f64::INFINITY, f64::min),
-    }
+    let mut found: Vec<f64> = (0..points.len()).filter_map(side).collect();
+    found.sort_by(f64::total_cmp);
+    found
 }
 
-/// How deep a point lies in a convex polygon, negative outside; for corners in either sense.
-fn inside(points: &[[f64; 2]], p: [f64; 2]) -> f64 {
-    let n = points.len();
-    let edge = |k: usize| {
-        let (a, b) = (points[k], points[(k + 1) % n]);
-        let d = [b[0] - a[0], b[1] - a[1]];
-        (d[0] * (p[1] - a[1]) - d[1] * (p[0] - a[0])) / d[0].hypot(d[1]).max(f64::MIN_POSITIVE)
-    };
-    let least = |sign: f64| (0..n).map(|k| sign * edge(k)).fold(f64::INFINITY, f64::min);
-    least(1.0).max(least(-1.0))
+/// Distance of a point from a piece of a line.
+fn distance(a: [f64; 2], b: [f64; 2], p: [f64; 2]) -> f64 {
+    let (d, e) = ([b[0] - a[0], b[1] - a[1]], [p[0] - a[0], p[1] - a[1]]);
+    let length = d[0] * d[0] + d[1] * d[1];
+    let t = if length > 0.0 { ((d[0] * e[0] + d[1] * e[1]) / length).clamp(0.0, 1.0) } else { 0.0 };
+    (e[0] - t * d[0]).hypot(e[1] - t * d[1])
 }
