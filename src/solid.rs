@@ -12,6 +12,9 @@ pub struct Solid {
     pub facets: Vec<Facet>,
     /// Convex pieces with disjoint interiors whose union is the solid; empty where no decomposition is known.
     pub cells: Vec<Cell>,
+    /// How far a corner may stand off the faces and the planes of cells that it belongs to, in model units: 0 where
+    /// corners are exact but for round-off.
+    pub off: f64,
 }
 
 /// A planar convex polygon of the boundary, counter-clockwise seen from outside.

@@ -142,7 +142,7 @@ fn mapped((asm, patches): &Made, linear: DMat3, shift: DVec3) -> Made {
             normal: turn(pose.transform_vector3(f.normal)),
         };
         let facets = asm.solid(p).facets.iter().map(facet).collect();
-        out.solids.push(Solid { vertices: asm.vertices(p).map(place).collect(), facets, cells: Vec::new() });
+        out.solids.push(Solid { vertices: asm.vertices(p).map(place).collect(), facets, ..Solid::default() });
         (out.parts[p.at()].solid, out.parts[p.at()].pose) = (p.at(), DAffine3::IDENTITY);
     }
     let patch = |q: &Patch| {

@@ -300,7 +300,7 @@ fn brick(lo: DVec3, hi: DVec3) -> Solid {
         ([4, 5, 7, 6], DVec3::Z),
     ];
     let facets = sides.map(|(corners, normal)| Facet { corners: corners.to_vec(), normal }).to_vec();
-    Solid { vertices: (0..8).map(corner).collect(), facets, cells: vec![] }
+    Solid { vertices: (0..8).map(corner).collect(), facets, ..Solid::default() }
 }
 
 fn pair(a: Solid, b: Solid, pose: DAffine3) -> Assembly {

@@ -38,12 +38,14 @@ pub const SAME_ANGLE: f64 = TOUCH_SHARE;
 pub struct Touch(f64);
 
 impl Touch {
-    /// [`TOUCH_SHARE`] of the smallest part's box diagonal, but never below the round-off of the coordinates.
+    /// [`TOUCH_SHARE`] of the smallest part's box diagonal, but never below the round-off of the coordinates, nor below
+    /// what the corners of two faces that are meant to touch may stand off them.
     pub fn of(asm: &Assembly) -> Touch {
         let boxes: Vec<(DVec3, DVec3)> = asm.ids().map(|p| bounds(asm.vertices(p))).collect();
         let least = boxes.iter().map(|(lo, hi)| (*hi - *lo).length()).fold(f64::INFINITY, f64::min);
         let reach = boxes.iter().map(|(lo, hi)| lo.abs().max(hi.abs()).max_element()).fold(0.0, f64::max);
-        Touch(if least.is_finite() { (least * TOUCH_SHARE).max(reach * ROUND_OFF_SHARE) } else { 0.0 })
+        let off = asm.ids().map(|p| 2.0 * asm.solid(p).off).fold(reach * ROUND_OFF_SHARE, f64::max);
+        Touch(if least.is_finite() { (least * TOUCH_SHARE).max(off) } else { 0.0 })
     }
 
     /// Model units.

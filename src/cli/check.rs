@@ -7,16 +7,16 @@ use super::load::Placed;
 use super::questions;
 use super::told::{News, Told, Trouble};
 use crate::interlock;
-use crate::locking::{self, Check, Verdict};
+use crate::locking::{Check, Verdict};
 use crate::report::answer::{self, CheckAnswer};
 use crate::report::content::{Chapter, Column, Table};
 use crate::report::words as chapters;
-use crate::sampling::{Beyond, Refined, Standing, refined};
+use crate::sampling::{self, Beyond, Refined, Standing, refined};
 
 pub fn check(placed: &Placed, fix: Option<&str>, refine: bool) -> Result<Told, Trouble> {
     let joined = &placed.joined;
     let fix = fix.map(|id| questions::part(joined, id)).transpose()?;
-    let check = locking::check_loose(&joined.assembly, &joined.patches, &joined.loose, fix);
+    let check = sampling::checked(joined, fix);
     let levels = refine.then(|| refined(&placed.spec)).transpose()?;
     Ok(told(placed, &check, levels))
 }

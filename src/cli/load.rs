@@ -5,8 +5,9 @@
 use crate::contact::{self, Joined};
 use crate::fault::{Fault, Faults};
 use crate::input;
-use crate::locking::{self, Check};
+use crate::locking::Check;
 use crate::report::answer::Source;
+use crate::sampling;
 use crate::spec::{self, Spec, Subject, Syntax};
 use crate::weave::{Hanging, Weave, hangs_together};
 use std::path::Path;
@@ -51,7 +52,7 @@ impl Loaded {
 
 impl Placed {
     pub fn check(&self) -> Check {
-        locking::check_loose(&self.joined.assembly, &self.joined.patches, &self.joined.loose, None)
+        sampling::checked(&self.joined, None)
     }
 }
 

@@ -62,7 +62,7 @@ fn solid(mesh: &mesh::Mesh) -> Solid {
         Facet { corners: mesh.triangles[t].to_vec(), normal: (b - a).cross(c - a).normalize_or_zero() }
     };
     let facets = (0..mesh.triangles.len()).map(facet).collect();
-    Solid { vertices: mesh.vertices.clone(), facets, cells: vec![] }
+    Solid { vertices: mesh.vertices.clone(), facets, ..Solid::default() }
 }
 
 fn plate([x, y, _]: [f64; 3]) -> Item {

@@ -107,20 +107,35 @@ pub fn lock(problem: &Weighted, stress: &Stress, programs: usize) -> Option<Boun
 /// The angle by which every normal may be turned so that the rows allow one of these motions, one of a single part
 /// along or about an axis, or the reverse of one: the least found. A row that is closed and does not move needs no turn.
 pub fn shown(rows: &[Row], unknowns: &Unknowns, motions: &[Vec<f64>]) -> Option<f64> {
-    let needed = |x: &[f64], sign: f64| {
-        let of = |row: &Row| {
-            let speed = velocity(row, unknowns, x).length();
-            let into = -sign * unknowns.opening(row, x);
-            if into > 0.0 { (into / speed).min(1.0).asin() } else { 0.0 }
-        };
-        rows.iter().map(of).fold(0.0, f64::max)
-    };
-    let singles = if rows.len() * unknowns.count <= 6 * MOST_SINGLES { unknowns.count } else { 0 };
-    let single = |k: usize| (0..unknowns.count).map(|c| f64::from(u8::from(c == k))).collect::<Vec<f64>>();
-    let motions: Vec<Vec<f64>> = motions.iter().cloned().chain((0..singles).map(single)).collect();
-    let all = motions.iter().flat_map(|x| [1.0, -1.0].map(|sign| needed(x, sign)));
+    let most =
+        |x: &[f64], sign: f64| rows.iter().map(|row| needed(row, unknowns, x, sign)).fold(0.0, f64::max);
+    let all = tried(rows, unknowns, motions);
+    let all = all.iter().flat_map(|x| [1.0, -1.0].map(|sign| most(x, sign)));
     // Room for the rounding of the speeds.
     all.reduce(f64::min).map(|angle| angle * (1.0 + 1e-9))
+}
+
+/// As [`shown`], where each row's normal may be turned by no more than its own angle; none where no motion passes.
+pub fn passing(rows: &[Row], unknowns: &Unknowns, motions: &[Vec<f64>], angles: &[f64]) -> Option<f64> {
+    let most = |x: &[f64], sign: f64| {
+        let needed = rows.iter().zip(angles).map(|(row, a)| (needed(row, unknowns, x, sign), *a));
+        needed.fold(Some(0.0), |most, (angle, a)| most.filter(|_| angle <= a).map(|m| f64::max(m, angle)))
+    };
+    let all = tried(rows, unknowns, motions);
+    all.iter().flat_map(|x| [1.0, -1.0].map(|sign| most(x, sign))).flatten().reduce(f64::min)
+}
+
+/// By how much the row's normal must be turned so that it lets the motion, or its reverse, pass.
+fn needed(row: &Row, unknowns: &Unknowns, x: &[f64], sign: f64) -> f64 {
+    let into = -sign * unknowns.opening(row, x);
+    if into > 0.0 { (into / velocity(row, unknowns, x).length()).min(1.0).asin() } else { 0.0 }
+}
+
+/// The motions, and those of a single part along or about an axis where there are not too many.
+fn tried(rows: &[Row], unknowns: &Unknowns, motions: &[Vec<f64>]) -> Vec<Vec<f64>> {
+    let singles = if rows.len() * unknowns.count <= 6 * MOST_SINGLES { unknowns.count } else { 0 };
+    let single = |k: usize| (0..unknowns.count).map(|c| f64::from(u8::from(c == k))).collect::<Vec<f64>>();
+    motions.iter().cloned().chain((0..singles).map(single)).collect()
 }
 
 /// Velocity of part b against part a at the row's point.

@@ -4,8 +4,10 @@
 //! at the points that were looked at: a lock by forces there, which is a proof; a motion by openings wider than the
 //! errors of the facets at their corners and middles, which leaves out contact that only the true surfaces have.
 
+mod known;
 mod refine;
 
+pub use known::{checked, known};
 pub use refine::{Level, Refined, refined};
 
 use crate::assembly::PartIx;
@@ -114,18 +116,22 @@ impl Ground<'_> {
     }
 
     fn standing(&self, freedom: Freedom, verdict: &Verdict) -> Standing {
-        let rows = rows(&self.joined.patches, freedom);
-        let unknowns = Unknowns::new(&self.joined.assembly, &rows, &self.still, freedom);
-        let errors = self.of_rows(&rows);
         match verdict {
-            Verdict::Locked(stress) => self.locked(&Weighed { rows, unknowns, errors }, stress),
-            Verdict::Free(motion) => self.free(&Weighed { rows, unknowns, errors }, motion),
+            Verdict::Locked(stress) => self.locked(&self.weighed(freedom), stress),
+            Verdict::Free(motion) => self.free(&self.weighed(freedom), motion),
             Verdict::Undecided(_) => Standing {
                 margin: None,
                 beyond_sampling: Beyond::Unproven,
                 beyond_why: "the verdict is undecided".into(),
             },
         }
+    }
+
+    fn weighed(&self, freedom: Freedom) -> Weighed {
+        let rows = rows(&self.joined.patches, freedom);
+        let unknowns = Unknowns::new(&self.joined.assembly, &rows, &self.still, freedom);
+        let errors = self.of_rows(&rows);
+        Weighed { rows, unknowns, errors }
     }
 
     /// The largest error of the patches that a row stands for.

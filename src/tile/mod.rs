@@ -105,7 +105,7 @@ fn tile(sites: &Sites, lattice: &Lattice, cells: &Cells, piece: Piece) -> Result
     for site in of_piece(sites, piece) {
         union.add(sites, piece, site, &cells[&canonical(lattice, site).0]);
     }
-    let solid = Solid { vertices: union.vertices, facets: union.facets, cells: union.cells };
+    let solid = Solid { vertices: union.vertices, facets: union.facets, cells: union.cells, off: 0.0 };
     manifold::check(&solid).map_err(|fault| TileError::NotASolid { piece, fault })?;
     Ok(Tile { piece, solid, across: union.across })
 }

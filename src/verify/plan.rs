@@ -11,13 +11,14 @@ pub use way::{Ball, Gap, Way, by_faces, by_program, gap};
 
 use crate::assembly::{Assembly, Mobility, PartIx};
 use crate::sequence::{Outcome, Plan, Step};
-use crate::solid::Cell;
+use crate::solid::{Cell, Solid};
 use glam::DVec3;
 use rayon::prelude::*;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Radius of the largest ball that may fit into two parts at once, as a share of the smallest part's box diagonal:
-/// 2^-20, far above round-off (2^-40) carried over the longest way and far below what can be made.
+/// 2^-20, far above round-off (2^-40) carried over the longest way and far below what can be made. Parts whose corners
+/// are known no better than that (meshes with few digits) are checked to twice what these may be off.
 pub const TOLERANCE_SHARE: f64 = 1.0 / (1u64 << 20) as f64;
 
 /// How far a direction's length may be from 1, and a length from its value in mm, as a share: nine digits.
@@ -99,8 +100,10 @@ impl<'a> Scene<'a> {
             let (lo, hi) = box_of(cells);
             (hi - lo).length()
         };
-        let tolerance = TOLERANCE_SHARE * cells.values().map(diagonal).fold(f64::INFINITY, f64::min);
+        let share = TOLERANCE_SHARE * cells.values().map(diagonal).fold(f64::INFINITY, f64::min);
         let solids: BTreeSet<usize> = parts.iter().map(|&p| asm.part(p).solid).collect();
+        // Two faces that are meant to touch overlap by what the corners of both stand off them.
+        let tolerance = solids.iter().map(|&s| 2.0 * asm.solids[s].off).fold(share, f64::max);
         for s in solids {
             cells_fill(asm, s, tolerance).map_err(|why| format!("solid {s}: {why}"))?;
         }
@@ -307,8 +310,8 @@ fn cells_fill(asm: &Assembly, solid: usize, tolerance: f64) -> Result<(), String
         }
         volume += volume_of(cell);
     }
-    let whole = solid.volume();
-    if (volume - whole).abs() <= VOLUME_SHARE * whole.abs() {
+    let (whole, surface) = (solid.volume(), surface(solid));
+    if (volume - whole).abs() <= VOLUME_SHARE * whole.abs() + solid.off * surface {
         Ok(())
     } else {
         Err(format!("the cells hold {volume}, the solid {whole}"))
@@ -330,6 +333,11 @@ fn agrees(cell: &Cell, tolerance: f64) -> Result<(), &'static str> {
         }
     }
     Ok(())
+}
+
+fn surface(solid: &Solid) -> f64 {
+    let at = |i: u32| solid.vertices[i as usize];
+    solid.triangles().map(|[a, b, c]| (at(b) - at(a)).cross(at(c) - at(a)).length() / 2.0).sum()
 }
 
 /// By the divergence theorem over the facets, as fans.

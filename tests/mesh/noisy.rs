@@ -10,7 +10,8 @@ use glam::{DAffine3, DVec3};
 use std::path::{Path, PathBuf};
 use weavelock::assembly::{Assembly, Mobility, PartIx};
 use weavelock::contact::{Joined, join};
-use weavelock::locking::check_loose;
+use weavelock::locking::Verdict;
+use weavelock::sampling::checked;
 use weavelock::spec;
 
 /// A folder of its own for each test, gone when the test is over.
@@ -34,7 +35,7 @@ pub fn joined(spec_file: &Path) -> Result<Joined, String> {
 }
 
 pub fn judged(j: &Joined, fix: Option<PartIx>) -> [&'static str; 2] {
-    let check = check_loose(&j.assembly, &j.patches, &j.loose, fix);
+    let check = checked(j, fix);
     [check.translation.word(), check.rigid.word()]
 }
 
@@ -230,12 +231,32 @@ fn fixtures_turned_and_rounded_keep_their_verdicts() {
     assert!(faults.is_empty(), "{}", faults.join("\n"));
 }
 
+/// A turn that slides on edges is jammed by rounding; the digits that jam it leave it open.
+#[test]
+fn a_lock_that_only_the_rounding_makes_is_undecided_and_says_so() {
+    let folder = Folder::new("jammed");
+    let path = fixtures().remove("knob-in-case").expect("a fixture");
+    let made = remade(&spec_assembly(&path), ["locked", "free"]);
+    let mut jammed = 0;
+    for put in turns(&mut Dice::new(5), &[Format::Obj(5); 8]) {
+        let j = joined(&write(&made, put, "0.001 mm", &folder.0)).unwrap_or_else(|e| panic!("{e}"));
+        let bare = weavelock::locking::check_loose(&j.assembly, &j.patches, &j.loose, None);
+        let found = checked(&j, None);
+        assert_ne!(found.rigid.word(), "locked");
+        assert_eq!(found.translation.word(), "locked");
+        if let (Verdict::Locked(_), Verdict::Undecided(gap)) = (&bare.rigid, &found.rigid) {
+            assert!(gap.why.contains("digits leave open") && gap.size > 0.0, "{gap:?}");
+            jammed += 1;
+        }
+    }
+    assert!(jammed > 0, "no turn of these was jammed: the test shows nothing");
+}
+
 #[test]
 #[ignore = "slow: the cases of others, turned, in single precision and with six digits"]
 fn cases_of_others_turned_and_rounded_keep_their_verdicts() {
     let folder = Folder::new("cases");
-    // The roof's facets, cut at T-junctions and rounded anew, are refused as crossing themselves: not understood yet.
-    for (name, held, want) in CASES.into_iter().filter(|c| c.0 != "roof") {
+    for (name, held, want) in CASES {
         let Some(a) = case(name, held) else { return };
         let made = Made { name: name.into(), ..remade(&a, [word(want); 2]) };
         let puts = turns(&mut Dice::new(6), &[Format::StlBinary, Format::ObjSignificant(6)]);

@@ -22,6 +22,8 @@ pub(super) struct Digits {
     exact: bool,
     /// Whether each number is one of single precision as far as its digits tell.
     single: bool,
+    /// How far the numbers are from those of single precision.
+    aside: f64,
     reach: f64,
     /// By decade: most significant digits, finest half unit.
     decades: BTreeMap<i32, (i32, f64)>,
@@ -29,7 +31,14 @@ pub(super) struct Digits {
 
 impl Default for Digits {
     fn default() -> Digits {
-        Digits { finest: f64::INFINITY, exact: true, single: true, reach: 0.0, decades: BTreeMap::new() }
+        Digits {
+            finest: f64::INFINITY,
+            exact: true,
+            single: true,
+            aside: 0.0,
+            reach: 0.0,
+            decades: BTreeMap::new(),
+        }
     }
 }
 
@@ -46,16 +55,19 @@ impl Digits {
         self.finest = self.finest.min(half);
         self.reach = self.reach.max(x.abs());
         self.exact &= x == f64::from(x as f32);
-        self.single &= (x - f64::from(x as f32)).abs() <= half;
+        let aside = (x - f64::from(x as f32)).abs();
+        self.single &= aside <= half;
+        self.aside = self.aside.max(aside);
         if x != 0.0 {
             let entry = self.decades.entry(x.abs().log10().floor() as i32).or_insert((0, f64::INFINITY));
             *entry = (entry.0.max(significant(numeral)), entry.1.min(half));
         }
     }
 
-    /// Half a unit in the last place of the coordinates, in the file's own unit.
+    /// By how much a coordinate may be off, in the file's own unit. What was stored in single precision and then
+    /// written with no more digits than it has was rounded twice.
     pub fn resolution(&self) -> f64 {
-        let stored = if self.single { SINGLE } else { DOUBLE } * self.reach;
+        let stored = if self.single { SINGLE * self.reach + self.aside } else { DOUBLE * self.reach };
         if self.exact { stored } else { stored.max(self.written()) }
     }
 
@@ -116,9 +128,11 @@ mod tests {
         is(&["100", "0.5"], SINGLE * 100.0);
         is(&["12.5000", "0.1234"], 5e-5);
         is(&["123.457", "0.00123457"], 5e-4);
-        // Single precision, written with more digits than it has and with as many.
-        is(&["12.3456793", "0.100000001"], SINGLE * 12.3456793);
-        is(&["12.345679", "0.1"], 5e-7);
+        // Single precision, written with more digits than it has and with as many: rounded twice, by less than half a
+        // unit of its own (SINGLE * 12.3 covers it) and to the words.
+        let aside = |x: f64| (x - f64::from(x as f32)).abs();
+        is(&["12.3456793", "0.100000001"], SINGLE * 12.3456793 + aside(12.3456793));
+        is(&["12.345679", "0.1"], SINGLE * 12.345679 + aside(12.345679));
         is(&["12.345678901234567", "0.1"], DOUBLE * 12.345678901234567);
     }
 }

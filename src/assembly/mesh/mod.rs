@@ -107,16 +107,20 @@ fn solid(soup: &Soup, reading: Reading) -> Result<Mesh, Vec<Found>> {
     if !faults.is_empty() {
         return Err(faults);
     }
-    let normals = flat::normals(&facets, &soup.vertices, width, reading.tolerance);
-    let crossed = crossing::crossings(&facets, &normals, &soup.vertices, width);
+    let crossed = crossing::crossings(&facets, &soup.vertices, width);
     if !crossed.is_empty() {
         return Err(crossed.into_iter().take(LISTED).map(|((a, b), _)| crossed_at(a, b, soup)).collect());
     }
+    let normals = flat::normals(&facets, &soup.vertices, width, reading.tolerance);
     let facets = facets.into_iter().zip(normals).map(|(corners, normal)| Facet { corners, normal }).collect();
-    let mut solid = used_only(Solid { vertices: soup.vertices.clone(), facets, cells: vec![] });
+    let mut solid =
+        used_only(Solid { vertices: soup.vertices.clone(), facets, off: width, ..Solid::default() });
     let mut remarks = remarks(&closed);
     match cells::cells(&solid, width) {
-        Ok(cells) => solid.cells = cells,
+        Ok(cells) => {
+            solid.off = cells.iter().map(cells::off).fold(width, f64::max);
+            solid.cells = cells;
+        }
         Err(why) => remarks.push(format!("no convex cells ({why}): plans are not run for this part")),
     }
     Ok(Mesh { solid, bodies: closed.bodies, voids: closed.voids, resolution: soup.resolution, remarks })
@@ -128,10 +132,10 @@ fn crossed_at(a: u32, b: u32, soup: &Soup) -> Found {
 }
 
 /// The solid without vertices that no facet uses.
-fn used_only(solid: Solid) -> Solid {
+fn used_only(mut solid: Solid) -> Solid {
     let mut new = vec![u32::MAX; solid.vertices.len()];
     let mut vertices = Vec::new();
-    let mut facets = solid.facets;
+    let mut facets = std::mem::take(&mut solid.facets);
     for i in facets.iter_mut().flat_map(|f| f.corners.iter_mut()) {
         if new[*i as usize] == u32::MAX {
             new[*i as usize] = vertices.len() as u32;
@@ -139,7 +143,7 @@ fn used_only(solid: Solid) -> Solid {
         }
         *i = new[*i as usize];
     }
-    Solid { vertices, facets, cells: solid.cells }
+    Solid { vertices, facets, ..solid }
 }
 
 fn remarks(c: &close::Closed) -> Vec<String> {

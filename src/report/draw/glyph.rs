@@ -86,7 +86,7 @@ fn lathe(middles: &[DVec3], ways: &[DVec3], radius: f64, (tip, head): (DVec3, DV
         faces.push(vec![at(last, k), at(last, k + 1), top]);
     }
     let facets = faces.into_iter().filter_map(|f| facet(&vertices, f)).collect();
-    Solid { vertices, facets, cells: Vec::new() }
+    Solid { vertices, facets, ..Solid::default() }
 }
 
 /// Points around `way`, all rings starting on the side that `first` fixes.

@@ -45,6 +45,15 @@ pub(super) fn cells(solid: &Solid, width: f64) -> Result<Vec<Cell>, NoCells> {
     }
 }
 
+/// How far a corner of the cell stands off a facet of its own, or outside any plane.
+pub(super) fn off(cell: &Cell) -> f64 {
+    let of = |(&plane, facet): (&Plane, &Vec<u32>)| {
+        let on = facet.iter().map(|&i| height(plane, cell.vertices[i as usize]).abs()).fold(0.0, f64::max);
+        cell.vertices.iter().map(|&v| height(plane, v)).fold(on, f64::max)
+    };
+    cell.planes.iter().zip(&cell.facets).map(of).fold(0.0, f64::max)
+}
+
 /// Signed volume about a corner of the solid: nothing cancels far from the origin.
 fn volume(solid: &Solid) -> f64 {
     let o = solid.vertices[0];
