@@ -169,7 +169,7 @@ fn all_faults_of_a_job_are_told_at_once() {
 fn the_chain_of_the_workshop_gives_its_factor() {
     let step = |name: &str, s: f64| {
         format!(
-            "[[step]]\nname = \"{name}\"\nshrinkage = {{ value = {s}, unit = \"%\", low = 0, high = 5, source = \"x\", grade = \"S\" }}\n"
+            "[[step]]\nname = \"{name}\"\nshrinkage = {{ value = {s}, unit = \"%\", low = 0, high = {s}, source = \"x\", grade = \"S\" }}\n"
         )
     };
     let pla = include_str!("../fab/processes/fdm-pla.toml");
@@ -187,6 +187,9 @@ fn the_chain_of_the_workshop_gives_its_factor() {
 #[test]
 fn processes_that_come_along_are_sound_and_others_are_refused_with_all_faults() {
     assert!(names().all(|n| Process::find(n).is_ok()));
+    let poured = Process::find("wax-poured").unwrap().schedule;
+    let step = |word: &str| poured.iter().position(|i| i.what.contains(word)).unwrap();
+    assert!(step("warm the mold") < step("Pour the wax"));
     let text = include_str!("../fab/processes/fdm-pla.toml");
     let bad = text
         .replace("value = 0.2\n", "value = 80\n")

@@ -284,3 +284,38 @@ fn the_spec_names_processes_of_single_parts_and_they_are_read_beside_it() {
     assert_eq!((of("weft-0"), of("weft-1")), ("my-sla".into(), "fdm-pla".into()));
     assert!(answer["plates"].as_array().unwrap().iter().all(|p| p["bed"] == "ender-3"));
 }
+
+#[test]
+fn the_bill_holds_what_a_mold_takes() {
+    let at = room("bill");
+    let out = ran(&["fab", &plain(), "--part", "weft-0=silicone-platinum", "--out", "p", "--json"], &at);
+    assert_eq!(out.status.code(), Some(0), "{}", said(&out));
+    let answer: Value = serde_json::from_slice(&out.stdout).expect("JSON");
+    let lines = answer["bill"]["lines"].as_array().expect("lines");
+    let halves: Vec<&Value> = lines
+        .iter()
+        .filter(|l| l["what"].as_str().is_some_and(|w| w.starts_with("printed mold half")))
+        .collect();
+    assert_eq!(halves.len(), 2, "{lines:?}");
+    assert!(halves.iter().all(|l| l["mass_g"].as_f64().is_some_and(|g| g > 0.0)));
+    let sheet = fs::read_to_string(at.join("p/3-molds.md")).expect("a mold sheet");
+    assert!(sheet.contains("keys fit one way only") && sheet.contains("opened.png"), "{sheet}");
+}
+
+#[test]
+fn corners_that_no_split_helps_are_given_up_and_told() {
+    let at = room("burr");
+    let burr = Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures/assemblies/burr.toml");
+    let out = ran(&["fab", &burr.display().to_string(), "--out", "p", "--json"], &at);
+    assert!(matches!(out.status.code(), Some(0 | 1)), "{}", said(&out));
+    let answer: Value = serde_json::from_slice(&out.stdout).expect("JSON");
+    let parts = answer["parts"].as_array().expect("parts");
+    assert_eq!(parts.len(), 5);
+    let findings = answer["findings"].as_array().expect("findings");
+    let told = |id: &Value| {
+        findings
+            .iter()
+            .any(|f| f["severity"] == "error" && f["place"]["parts"].as_array().unwrap().contains(id))
+    };
+    assert!(parts.iter().all(|p| !p["file"].is_null() || told(&p["id"])), "{findings:?}");
+}

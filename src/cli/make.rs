@@ -13,10 +13,10 @@ use crate::spec::FabSpec;
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::path::Path;
-use weavelock_fab::check::{Outcome, Programs};
+use weavelock_fab::check::{Check, Outcome, Programs};
 use weavelock_fab::make::{self, Recipe};
 use weavelock_fab::process::{Overrides, Process};
-use weavelock_fab::report::{Report, RouteReport, Severity};
+use weavelock_fab::report::{Finding, Report, RouteReport, Severity};
 
 /// Whether programs of others are asked.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -134,10 +134,10 @@ fn steps_of_none(own: &Overrides, used: &[&Process]) -> Vec<String> {
 pub fn told_fab(report: &Report, out: &Path) -> Told {
     let news = News::of(report.worst() != Some(Severity::Error));
     let answer = FabAnswer { verb: "fab", report };
-    Told::new(news, &answer, &report.name, "Parts as made", fab_chapter(report, out))
+    Told::new(news, &answer, &report.name, "Parts as made", fab_chapter(report, out, &[]))
 }
 
-pub fn fab_chapter(report: &Report, out: &Path) -> Chapter {
+pub fn fab_chapter(report: &Report, out: &Path, more: &[Check]) -> Chapter {
     let errors = report.findings.iter().filter(|f| f.severity == Severity::Error).count();
     let least = report.gaps.iter().map(|g| g.least_mm).fold(f64::INFINITY, f64::min);
     let (tone, headline) = match errors {
@@ -169,15 +169,20 @@ pub fn fab_chapter(report: &Report, out: &Path) -> Chapter {
             format!("{least:.4} mm between {} pairs", report.gaps.len()),
         ));
     }
-    facts.extend(checked(report));
-    let words =
-        report.findings.iter().map(|f| format!("{:?}: {} ({})", f.severity, f.what, f.remedy)).collect();
+    facts.extend(checked(report, more));
+    let words = report.findings.iter().map(finding).collect();
     let tables = vec![Table {
         caption: "As read back from the files".into(),
         head,
         rows: report.parts.iter().map(row).collect(),
     }];
     Chapter { tone, headline, words, facts, tables, ..Chapter::default() }
+}
+
+/// A finding in a line, with the parts that it is about.
+fn finding(f: &Finding) -> String {
+    let of = if f.place.parts.is_empty() { String::new() } else { f.place.parts.join(", ") + ": " };
+    format!("{:?}: {of}{} ({})", f.severity, f.what, f.remedy)
 }
 
 fn route_fact(r: &RouteReport) -> (String, String) {
@@ -214,8 +219,9 @@ pub fn ledger_chapter(report: &Report) -> Chapter {
 }
 
 /// What programs of others said, a line for each program; that they were not asked is said too.
-fn checked(report: &Report) -> Vec<(String, String)> {
+fn checked(report: &Report, more: &[Check]) -> Vec<(String, String)> {
     let all = report.parts.iter().flat_map(|p| &p.checks).chain(report.pair_checks.iter().map(|p| &p.check));
+    let all = all.chain(report.molds.iter().flat_map(|m| &m.checks)).chain(more);
     let mut by: BTreeMap<&str, [usize; 3]> = BTreeMap::new();
     for check in all {
         let column = match check.outcome {

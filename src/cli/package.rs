@@ -75,14 +75,16 @@ fn placed_in(package: &mut PackageReport, out: &Path) {
 fn told(package: &PackageReport, out: &Path) -> Told {
     let news = News::of(package.report.worst() != Some(Severity::Error));
     let answer = PackageAnswer { verb: "fab", folder: out.display().to_string(), package };
-    let mut chapter = make::fab_chapter(&package.report, out);
-    chapter.facts.push(("plates".into(), plates(package)));
+    let plates = package.plates.iter().flat_map(|p| p.checks.clone());
+    let more: Vec<_> = plates.chain(package.assembly.iter().flat_map(|a| a.checks.clone())).collect();
+    let mut chapter = make::fab_chapter(&package.report, out, &more);
+    chapter.facts.push(("plates".into(), plates_fact(package)));
     let first = out.join("README.md").display().to_string();
     chapter.facts.push(("read first".into(), first));
     Told::new(news, &answer, &package.report.name, "Package", chapter)
 }
 
-fn plates(package: &PackageReport) -> String {
+fn plates_fact(package: &PackageReport) -> String {
     let grams: f64 = package.plates.iter().filter_map(|p| p.grams).sum();
     let sliced = if grams > 0.0 { format!(", {grams:.1} g of filament as sliced") } else { String::new() };
     format!("{}{sliced}", package.plates.len())

@@ -170,7 +170,7 @@ fn everything(loaded: Loaded, out: &Path, common: &Common) -> Result<Told, Troub
             keep(&format!("{}.png", ["together", "exploded", "witness"][k.min(2)]), bytes)?;
         }
     }
-    let parts = Answer::Given(make::fab_chapter(&made, &folder));
+    let parts = Answer::Given(make::fab_chapter(&made, &folder, &[]));
     let ledger = Answer::Given(make::ledger_chapter(&made));
     keep("report.html", page(&input(&placed, &asked, parts, ledger)).as_bytes())?;
     Ok(summary(&placed, asked, as_made, fab, files, out))

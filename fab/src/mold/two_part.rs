@@ -10,7 +10,7 @@ use crate::mold::parting;
 use crate::mold::pictures;
 use crate::mold::prepare::Ready;
 use crate::mold::rigid;
-use crate::mold::{Kind, Mold, MoldError, MoldSpec, Volume, scad};
+use crate::mold::{Kind, Mold, MoldError, MoldSpec, Step, Volume, scad};
 use crate::report::{Finding, Severity};
 use crate::solid::Solid;
 use glam::DVec3;
@@ -51,9 +51,33 @@ pub fn mold(ready: Ready, spec: &MoldSpec) -> Result<Mold, MoldError> {
     let channels = tools.above.minus(cavity).common(&Solid::of(&mold.part_box())?);
     mold.volumes.push(Volume { of: "cavity".into(), mm3: cavity.volume(), grams: None });
     mold.volumes.push(Volume { of: "channels and slots".into(), mm3: channels.volume(), grams: None });
+    mold.steps = steps(&mold);
     extra(&mut mold, "scad", scad::two_part);
     mold.extras.push(pictures::opened(&mold));
     Ok(mold)
+}
+
+fn steps(mold: &Mold) -> Vec<Step> {
+    let (f, plan) = (&mold.figures, &mold.plan);
+    let does = [
+        "print both halves; seal the faces of the cavity, coat them with release agent".to_string(),
+        format!(
+            "close the halves: the {} keys fit one way only; screws through the {} holes of {} mm",
+            plan.keys.len(),
+            plan.bolts.len(),
+            f.bolt.value
+        ),
+        format!(
+            "stand it with the upper half on top; pour into the widest hole ({} mm) until it stands in the {} vents of {} mm",
+            f.sprue.value,
+            plan.vents.len(),
+            f.vent.value
+        ),
+        "when it has cured, take the screws out and pry at the slots: the halves leave straight".to_string(),
+    ];
+    let step =
+        |does: String| Step { does, hours: None, celsius: None, source: "geometry of this mold".into() };
+    does.into_iter().map(step).collect()
 }
 
 /// The part with its undercuts filled, where they are within what the cavity may be off; and how much came to it.

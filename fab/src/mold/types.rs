@@ -64,6 +64,20 @@ pub enum Kind {
     Below,
 }
 
+impl Kind {
+    pub fn words(self) -> &'static str {
+        match self {
+            Kind::Half => "mold half",
+            Kind::PatternBoard => "pattern board",
+            Kind::BoxWall => "box wall",
+            Kind::Tree => "tree, joined from patterns: not printed",
+            Kind::Flask => "flask, of steel: not printed",
+            Kind::Part => "part",
+            Kind::Below => "parting surface",
+        }
+    }
+}
+
 /// One solid to be written, in the mold's frame (z along the pull), mm.
 #[derive(Clone, Debug)]
 pub struct Piece {

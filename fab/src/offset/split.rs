@@ -32,7 +32,7 @@ fn is_lost(body: &Body, c: u32) -> bool {
     !body.corners[c as usize].placed && !body.star[c as usize].is_empty()
 }
 
-/// The best split that places at least one half, and leaves the other with fewer triangles than before.
+/// The best split that places at least one half, and gets on with the other.
 fn best_split(body: &Body, c: u32) -> Option<(Vec<u32>, Split)> {
     let fan = fan(body, c)?;
     let splits = ways(body, c, &fan);
@@ -76,6 +76,7 @@ fn ways(body: &Body, c: u32, fan: &[u32]) -> Vec<Split> {
     let n = fan.len();
     let facet = |k: usize| body.facet[fan[k % n] as usize];
     let anchor = body.corners[c as usize].anchor;
+    let whole = body.corners[c as usize].facets.len();
     let mut all = Vec::new();
     for from in 0..n {
         for to in from + 1..n {
@@ -85,13 +86,24 @@ fn ways(body: &Body, c: u32, fan: &[u32]) -> Vec<Split> {
                 let fill = [facet(i), facet(j)];
                 let facets = [&kept, &gone].map(|half| with(half, &fill));
                 let at = [0, 1].map(|k| body.place(&facets[k], anchor));
-                if at.iter().any(Option::is_some) {
-                    all.push(Split { from, to, fill, facets, at });
+                let split = Split { from, to, fill, facets, at };
+                if split.at.iter().any(Option::is_some) && gets_on(&split, n, whole) {
+                    all.push(split);
                 }
             }
         }
     }
     all
+}
+
+/// Whether a half without a place has fewer facets than the corner had, or as many and fewer triangles (two fill the
+/// gap): so splitting ends.
+fn gets_on(s: &Split, triangles: usize, facets: usize) -> bool {
+    let kept = s.to - s.from;
+    [kept, triangles - kept]
+        .into_iter()
+        .enumerate()
+        .all(|(k, own)| s.at[k].is_some() || (s.facets[k].len(), own + 2) < (facets, triangles))
 }
 
 fn with(half: &[u32], fill: &[u32; 2]) -> Vec<u32> {

@@ -3,7 +3,9 @@
 //! Masses of prints are those of solid plastic: an upper bound; a slicer's figure stands in the checks. Not promised:
 //! what is spilled, beyond the tenth that is added to metal.
 
+use super::molds::MoldSheet;
 use crate::make::MM3_IN_CM3;
+use crate::mold::{Kind as PieceKind, Volume, WrittenPiece};
 use crate::process::{Process, Route};
 use crate::report::{Report, RouteReport};
 use serde::Serialize;
@@ -106,5 +108,58 @@ fn metal(kinds: &[Kind], process: &Process) -> Line {
         .map(|k| (k.first.nominal_volume_mm3 - k.first.removed_mm3) * k.ids.len() as f64)
         .sum::<f64>();
     let note = "parts and a tenth; the tree's runner and gates come on top (see the molds)".to_string();
-    line("metal to melt".into(), &process.material, 1, mm3 * METAL_EXTRA, process.density.value, note)
+    line(MELT.into(), &process.material, 1, mm3 * METAL_EXTRA, process.density.value, note)
+}
+
+/// What is mixed beyond the pour: what stays in cup and on stick.
+const POUR_EXTRA: f64 = 1.1;
+
+/// What the molds take, after the parts: their prints, and all that is mixed and melted for them. Where every part of a
+/// process has its tree, the trees' metal stands instead of the parts'.
+pub fn add_molds(bill: &mut Bill, report: &Report, molds: &[MoldSheet]) {
+    for route in &report.routes {
+        let own: Vec<&MoldSheet> = molds.iter().filter(|m| m.process == route.process.name).collect();
+        let treed = |id: &String| own.iter().any(|m| m.parts.contains(id) && melts(m));
+        if route.process.route.is_metal() && route.parts.iter().all(treed) {
+            bill.lines.retain(|l| l.what != MELT || l.material != route.process.material);
+        }
+        bill.lines.extend(own.iter().flat_map(|m| mold_lines(m, &route.process)));
+    }
+}
+
+const MELT: &str = "metal to melt";
+
+fn melts(m: &MoldSheet) -> bool {
+    m.report.volumes.iter().any(|v| v.of == MELT)
+}
+
+fn mold_lines(m: &MoldSheet, process: &Process) -> Vec<Line> {
+    let print = &process.print;
+    let printed = m.report.pieces.iter().filter(|p| {
+        p.copies > 0 && matches!(p.kind, PieceKind::Half | PieceKind::PatternBoard | PieceKind::BoxWall)
+    });
+    let print_line = |p: &WrittenPiece| {
+        let what = format!("printed {}: {}", p.kind.words(), p.file);
+        line(what, &print.material, p.copies, p.volume_mm3, print.density.value, "if printed solid".into())
+    };
+    printed.map(print_line).chain(m.report.volumes.iter().filter_map(|v| pour_line(m, v))).collect()
+}
+
+/// `None` for volumes that nothing is weighed for.
+fn pour_line(m: &MoldSheet, v: &Volume) -> Option<Line> {
+    let silicone = v.of.contains("pour");
+    let (extra, material, note) = match silicone {
+        true => (POUR_EXTRA, "mold silicone", "with a tenth to spare"),
+        false => (1.0, v.of.as_str(), ""),
+    };
+    let mass_g = v.grams? * extra;
+    Some(Line {
+        what: format!("{}: {}", m.report.name, v.of),
+        material: material.to_string(),
+        count: 1,
+        volume_cm3: v.mm3 / MM3_IN_CM3 * extra,
+        mass_g,
+        total_g: mass_g,
+        note: note.to_string(),
+    })
 }

@@ -86,6 +86,7 @@ pub fn molds(
         }
     }
     package.report.molds_note = note(package);
+    super::bill::add_molds(&mut package.bill, &package.report, &package.mold_sheets);
     Ok(())
 }
 
@@ -108,7 +109,9 @@ fn unmade(parts: &[String], what: &str, why: &MoldError) -> Finding {
     }
 }
 
-fn keep(package: &mut PackageReport, parts: Vec<String>, process: &str, report: MoldReport) {
+/// Heats of a tree are left out: the process has its own, and a sheet that says two is no sheet.
+fn keep(package: &mut PackageReport, parts: Vec<String>, process: &str, mut report: MoldReport) {
+    report.steps.retain(|s| s.celsius.is_none());
     let file = |p: &mold::WrittenPiece| MoldFile {
         mold: report.name.clone(),
         file: format!("{PLACE}/{}", p.file),

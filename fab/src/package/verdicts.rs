@@ -3,7 +3,7 @@
 //!
 //! Not promised: that a slicer's pass means a good print; it slices thin walls and overlaps without a word.
 
-use super::PackageReport;
+use super::{LayingReport, PackageReport};
 use crate::check::slicer::{self, Slicing};
 use crate::check::{Check, Outcome};
 use crate::make::Recipe;
@@ -57,7 +57,7 @@ pub fn collect(package: &mut PackageReport) {
     let plates = package.plates.iter().flat_map(|p| p.checks.iter().map(|c| (p.file.as_str(), c)));
     let assembly = package.assembly.iter().flat_map(|a| a.checks.iter().map(|c| (a.file.as_str(), c)));
     let mut found: Vec<Finding> = plates.chain(assembly).filter_map(|(file, c)| of_check(file, c)).collect();
-    found.extend(package.layings.iter().filter_map(of_laying));
+    found.extend(of_layings(&package.layings));
     package.report.findings.extend(found);
     package.report.findings.sort_by_key(|f| std::cmp::Reverse(f.severity));
 }
@@ -72,11 +72,14 @@ fn of_check(file: &str, check: &Check) -> Option<Finding> {
     Some(Finding { severity, place: Place::default(), what, remedy: remedy.into() })
 }
 
-fn of_laying(l: &super::LayingReport) -> Option<Finding> {
-    (l.laying.footing == super::laying::Footing::Tips).then(|| Finding {
+/// One finding for all parts that stand on nothing flat.
+fn of_layings(layings: &[LayingReport]) -> Option<Finding> {
+    let tips = layings.iter().filter(|l| l.laying.footing == super::laying::Footing::Tips);
+    let parts: Vec<String> = tips.map(|l| l.part.clone()).collect();
+    (!parts.is_empty()).then(|| Finding {
         severity: Severity::Warning,
-        place: Place { parts: vec![l.part.clone()], at: vec![] },
-        what: "it has no flat face that it can stand on".into(),
-        remedy: "print it with supports and a brim, or cut a face with --flatten".into(),
+        place: Place { parts, at: vec![] },
+        what: "no flat face to stand on".into(),
+        remedy: "print with supports and a brim, or cut a face with --flatten".into(),
     })
 }

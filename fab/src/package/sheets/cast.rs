@@ -33,6 +33,9 @@ pub fn sheet(p: &PackageReport) -> Option<String> {
         }
         s += &schedule(&r.process.schedule);
     }
+    if !p.mold_sheets.is_empty() {
+        s += "\nWhat is done with one mold (boxes and their pours, tree, flask), step by step: [3-molds.md](3-molds.md).\n";
+    }
     s += &format!("\nMolds: {}\n", p.report.molds_note);
     Some(s)
 }
@@ -59,7 +62,7 @@ pub fn pour(p: &PackageReport) -> Option<String> {
         return None;
     }
     let mut s = format!(
-        "# Pour sheet: {}\n\nOf the parts alone; what fills sprues, runners and boxes comes on top.\n",
+        "# Pour sheet: {}\n\nFirst what each mold takes, then the parts alone: what fills sprues, runners and boxes is in the first only.\n",
         p.report.name
     );
     for r in routes {

@@ -3,7 +3,7 @@
 //! Not promised: words for what the mold's own steps and figures do not say.
 
 use super::table::{short, table};
-use crate::mold::{Measured, MoldReport, Parting, Step, Volume, WrittenPiece};
+use crate::mold::{Measured, MoldReport, Parting, Route, Step, Volume, WrittenPiece};
 use crate::package::PackageReport;
 
 /// `None` where there is no mold.
@@ -12,12 +12,15 @@ pub fn sheet(p: &PackageReport) -> Option<String> {
         return None;
     }
     let mut s = format!(
-        "# Mold sheet: {}\n\nAll files are in `molds/`, in millimetres, scale already applied: print at 100 %.\n",
+        "# Mold sheet: {}\n\nAll files are in `molds/`, in millimetres, scale already applied: print at 100 %, with layer, material and XY compensation 0 as on the print sheet or in the bill. Halves print with the parting face up (the upper one turned over); box walls stand as they are; a pattern board carries half of the master on each side: supports below. A pattern board holds the master already; a single master is for a board of your own, or to try the fit.\n",
         p.report.name
     );
     for m in &p.mold_sheets {
         s += &format!("\n## {} ({})\n\nFor: {}.\n", m.report.name, m.process, m.parts.join(", "));
         s += &mold(&m.report);
+        if m.report.route == Route::LostWax {
+            s += "\nHeats and times of burnout and pour: [4-cast.md](4-cast.md), by the process.\n";
+        }
     }
     Some(s)
 }
@@ -48,12 +51,12 @@ fn mold(m: &MoldReport) -> String {
     let piece = |w: &WrittenPiece| {
         vec![
             format!("`{}`", w.file),
-            format!("{:?}", w.kind).to_lowercase(),
+            w.kind.words().to_string(),
             w.copies.to_string(),
             format!("{:.1}", w.volume_mm3 / 1000.0),
         ]
     };
-    s += &table(&["file", "", "print", "cm3"], m.pieces.iter().filter(|w| w.copies > 0).map(piece));
+    s += &table(&["file", "", "number", "cm3"], m.pieces.iter().filter(|w| w.copies > 0).map(piece));
     let volume = |v: &Volume| {
         vec![
             v.of.clone(),
@@ -76,12 +79,14 @@ fn mold(m: &MoldReport) -> String {
         let kept = if v.kept { "kept" } else { "**missed**" };
         vec![
             v.of.clone(),
-            format!("{} {}", short(v.value), v.unit),
-            format!("{} {}", short(v.limit), v.unit),
+            format!("{} {}", short(v.value), v.unit).trim().to_string(),
+            format!("{} {}", short(v.limit), v.unit).trim().to_string(),
             kept.to_string(),
         ]
     };
     s += &table(&["measured on the files", "found", "limit", ""], m.measured.iter().map(measure));
+    let pictures = m.files.iter().filter(|f| f.ends_with(".png"));
+    s += &pictures.map(|f| format!("\n![{f}](molds/{f})\n")).collect::<String>();
     let others = m.files.iter().map(|f| format!("- `molds/{f}`\n")).collect::<String>();
     s + "\n" + &others
 }
