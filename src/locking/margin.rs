@@ -118,8 +118,8 @@ pub fn shown(rows: &[Row], unknowns: &Unknowns, motions: &[Vec<f64>]) -> Option<
 /// As [`shown`], where each row's normal may be turned by no more than its own angle; none where no motion passes.
 pub fn passing(rows: &[Row], unknowns: &Unknowns, motions: &[Vec<f64>], angles: &[f64]) -> Option<f64> {
     let most = |x: &[f64], sign: f64| {
-        let needed = rows.iter().zip(angles).map(|(row, a)| (needed(row, unknowns, x, sign), *a));
-        needed.fold(Some(0.0), |most, (angle, a)| most.filter(|_| angle <= a).map(|m| f64::max(m, angle)))
+        let mut needed = rows.iter().zip(angles).map(|(row, a)| (needed(row, unknowns, x, sign), *a));
+        needed.try_fold(0.0, |most, (angle, a)| (angle <= a).then_some(f64::max(most, angle)))
     };
     let all = tried(rows, unknowns, motions);
     all.iter().flat_map(|x| [1.0, -1.0].map(|sign| most(x, sign))).flatten().reduce(f64::min)
