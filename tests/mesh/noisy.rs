@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 use weavelock::assembly::{Assembly, Mobility, PartIx};
 use weavelock::contact::{Joined, join};
 use weavelock::locking::Verdict;
-use weavelock::sampling::checked;
+use weavelock::sampling::{Beyond, checked, standing};
 use weavelock::spec;
 
 /// A folder of its own for each test, gone when the test is over.
@@ -233,7 +233,7 @@ fn fixtures_turned_and_rounded_keep_their_verdicts() {
 
 /// A turn that slides on edges is jammed by rounding; the digits that jam it leave it open.
 #[test]
-fn a_lock_that_only_the_rounding_makes_is_undecided_and_says_so() {
+fn a_lock_that_only_the_rounding_makes_is_undecided_or_marked_unproven() {
     let folder = Folder::new("jammed");
     let path = fixtures().remove("knob-in-case").expect("a fixture");
     let made = remade(&spec_assembly(&path), ["locked", "free"]);
@@ -242,8 +242,11 @@ fn a_lock_that_only_the_rounding_makes_is_undecided_and_says_so() {
         let j = joined(&write(&made, put, "0.001 mm", &folder.0)).unwrap_or_else(|e| panic!("{e}"));
         let bare = weavelock::locking::check_loose(&j.assembly, &j.patches, &j.loose, None);
         let found = checked(&j, None);
-        assert_ne!(found.rigid.word(), "locked");
         assert_eq!(found.translation.word(), "locked");
+        // Motions within the digits are tried, not all: what is missed keeps its word, and never without the mark.
+        if found.rigid.word() == "locked" {
+            assert_eq!(standing(&j, &found).rigid.beyond_sampling, Beyond::Unproven);
+        }
         if let (Verdict::Locked(_), Verdict::Undecided(gap)) = (&bare.rigid, &found.rigid) {
             assert!(gap.why.contains("digits leave open") && gap.size > 0.0, "{gap:?}");
             jammed += 1;
