@@ -250,7 +250,8 @@ fn changed_claims_are_refused() {
     refused("two words", burr(), |a| a.interlocked = Some(InterlockWord::Undecided));
 }
 
-/// Eighty parts of which one is held, the key: the other 79 are one core and leave together.
+/// Eighty parts of which one is held, the key: all others are stopped by it, and once it is away one after another can
+/// start, so nothing is locked without it.
 #[test]
 #[ignore = "slow: 79 parts that only move together"]
 fn the_bunny_has_one_key() {
@@ -268,5 +269,5 @@ fn the_bunny_has_one_key() {
     let found = found(&joined.assembly, &joined.patches);
     assert!(matches!(check(&joined.assembly, &joined.patches, None).rigid, Verdict::Free(_)));
     assert!(found.keys.found.iter().any(|k| k.parts == Set::from([PartIx(0)])));
-    assert_eq!(found.cores.largest.iter().map(|c| c.parts.len()).collect::<Vec<_>>(), [79]);
+    assert!(found.cores.largest.is_empty());
 }
