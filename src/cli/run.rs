@@ -216,7 +216,7 @@ fn chapter(told: &Result<Told, String>) -> Answer<Chapter> {
 
 /// What is not built; said wherever a whole run is told.
 const LIMITS: [&str; 4] = [
-    "A run makes the parts alone; `weavelock fab` makes the package with plates, sheets and coupon. Molds are not built yet.",
+    "A run makes the parts alone; `weavelock fab` makes the package with plates, sheets, coupon and, for cast parts, molds of two parts.",
     "Plans are straight moves of parts and groups; turns and moves in several stretches are not searched.",
     "Locked is first order at zero clearance; the least clearance that opens a lock is not searched for yet.",
     "The tiles are those of the sampled sites; the check says whether its verdict holds for the curved bisectors too.",
