@@ -1,7 +1,7 @@
 //! Takes a part as made, its tree and the least wall of a process; gives where the part is thinner than that, and its
 //! sharpest edge.
 //!
-//! Exact up to round-off for walls: all pairs of triangles that face away from one another within [`PARALLEL`] and are
+//! Exact up to round-off for walls: all pairs of triangles that face away from one another within `PARALLEL` and are
 //! nearer than the least wall through the material are looked at. Not promised: pins and lips that taper by more than
 //! that; their sharp edge is told instead.
 
@@ -34,7 +34,7 @@ pub struct Sharp {
     pub thin_over_mm: f64,
 }
 
-/// What was found; `None` where no wall is thinner than asked, or no edge sharper than [`PARALLEL`].
+/// What was found; `None` where no wall is thinner than asked, or no edge sharper than `PARALLEL`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Walls {
     pub thinnest: Option<Thin>,

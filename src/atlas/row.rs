@@ -88,7 +88,7 @@ pub struct Row {
     pub c: i32,
     pub n: u32,
     pub family: String,
-    /// Other [a,b,c] of the same cloth, moved or mirrored; where the table has no rows of their own this row speaks of
+    /// Other `[a,b,c]` of the same cloth, moved or mirrored; where the table has no rows of their own this row speaks of
     /// their family, and of their hands after the isometry named.
     pub equivalents: Vec<Equivalent>,
     /// Hand of the weft's unit tile at phase 0, how the warp's follows, and the hand of the endless weave, its strands uncut;

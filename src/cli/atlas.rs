@@ -29,7 +29,7 @@ pub struct Asked {
     /// Join the files (or folders) of shards into --out instead of working rows out
     #[arg(long, value_name = "FILES", num_args = 1.., conflicts_with_all = ["shard", "max_n", "every", "most", "phases", "flex_up_to", "rise", "lift", "cover", "samples"])]
     pub merge: Vec<PathBuf>,
-    /// A row for every [a,b,c], not only one for all names of a cloth
+    /// A row for every `[a,b,c]`, not only one for all names of a cloth
     #[arg(long)]
     pub every: bool,
     /// Largest repetition to try
@@ -41,7 +41,7 @@ pub struct Asked {
     /// Look for flexible parts where a + b is at most this; a row takes minutes from 5 on
     #[arg(long, value_name = "N", default_value_t = FLEX_UP_TO, value_parser = clap::value_parser!(u32).range(0..=64))]
     pub flex_up_to: u32,
-    /// Profile, as in a spec's [profile]
+    /// Profile, as in a spec's `[profile]`
     #[arg(long, default_value_t = Settings::default().rise)]
     pub rise: f64,
     #[arg(long, default_value_t = Settings::default().lift)]

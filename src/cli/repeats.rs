@@ -22,7 +22,7 @@ use std::path::{Path, PathBuf};
 
 #[derive(Args, Debug)]
 pub struct Asked {
-    /// [a,b,c], or a woven spec, a WIF file or a drawn draft
+    /// `[a,b,c]`, or a woven spec, a WIF file or a drawn draft
     #[arg(allow_hyphen_values = true, value_name = "[a,b,c]|FILE")]
     pub weave: String,
     /// Largest repetition to try
@@ -39,7 +39,7 @@ pub struct Asked {
     pub wefts: Option<u32>,
     #[arg(long, value_parser = clap::value_parser!(u32).range(1..=256))]
     pub warps: Option<u32>,
-    /// Profile, as in a spec's [profile] (default: the spec's, or 0.6, 1, 1 and 8)
+    /// Profile, as in a spec's `[profile]` (default: the spec's, or 0.6, 1, 1 and 8)
     #[arg(long)]
     pub rise: Option<f64>,
     #[arg(long)]

@@ -26,7 +26,7 @@ pub struct Node {
     pub attributes: Attributes,
 }
 
-/// Name and value; names are those of [`KEYS`].
+/// Name and value; names are those of `KEYS`.
 pub type Attributes = Vec<(&'static str, String)>;
 
 /// Every attribute: what it belongs to, its name and its type in GraphML.

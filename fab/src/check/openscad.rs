@@ -115,7 +115,7 @@ impl OpenScad {
     }
 
     /// Whether a source, with a variable set, makes the solid that is in a file: the same volume, and nothing that only
-    /// one of the two has, both to [`VOLUME_TOLERANCE`]. `expected`: volume in the file, mm3.
+    /// one of the two has, both to `VOLUME_TOLERANCE`. `expected`: volume in the file, mm3.
     pub fn same(&self, source: &Path, define: &str, file: &Path, expected: f64) -> Check {
         let verdict = self.run(source, &[define.to_string()]).and_then(|theirs| {
             let off = (theirs.volume() - expected).abs() / expected;

@@ -21,7 +21,7 @@ pub struct Candidate {
     pub direction: DVec3,
     /// Area that neither half reaches straight, mm2; 0 where it is round-off.
     pub undercut: f64,
-    /// The same in steps of [`SAME_UNDERCUT`], by which directions are compared.
+    /// The same in steps of `SAME_UNDERCUT`, by which directions are compared.
     pub level: u64,
     /// Extent along the direction, mm.
     pub depth: f64,

@@ -82,7 +82,7 @@ pub struct CaseAnswer {
     pub no_plan_from: Option<u32>,
 }
 
-/// Swatches of one class of sizes, proven together: wefts + i * step[0], warps + j * step[1] for all i, j >= 0.
+/// Swatches of one class of sizes, proven together: wefts + i * `step[0]`, warps + j * `step[1]` for all i, j >= 0.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct ClassAnswer {
     pub step: [u32; 2],

@@ -3,7 +3,7 @@
 //!
 //! x to the right and y up in both; the lower half is seen through the upper one. Color is never the only sign: arcs
 //! and single directions of their own are drawn thick and named in the legend. Not promised: exact outlines (arcs are
-//! drawn by chords of [`CHORD`] radians).
+//! drawn by chords of `CHORD` radians).
 
 use super::sheet::{Anchor, Mark, Rgb, Sheet, rectangle};
 use crate::blocking::ndbg::Ndbg;
