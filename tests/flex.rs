@@ -1,14 +1,12 @@
 //! Flexible parts at the library and the command line: known minima, twins, symmetry, budgets, forged answers.
 
-use crate::support::{joined, tiles, window};
+use crate::support::{joined, ran, tiles, verified, window};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
 use weavelock::contact::Joined;
 use weavelock::flex::cores::Contacts;
 use weavelock::flex::{Ask, Flex, Listing, Set, Wanted, flex};
 use weavelock::report::answer::{Sealed, checksum};
-use weavelock::verify;
 
 /// Far below the size of a facet, far above the round-off of vertices.
 const WITHIN: f64 = 1e-9;
@@ -33,20 +31,11 @@ fn written(name: &str, text: &str) -> PathBuf {
     path
 }
 
-fn ran(args: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_weavelock")).args(args).output().expect("runs")
-}
-
 fn json(path: &Path, more: &[&str]) -> Value {
     let args: Vec<&str> =
         ["flex", path.to_str().unwrap(), "--json", "-q"].iter().chain(more).copied().collect();
     let out = ran(&args);
     serde_json::from_slice(&out.stdout).unwrap_or_else(|e| panic!("{e}: {out:?}"))
-}
-
-fn verified(answer: &Value) -> verify::Verified {
-    let sealed: Sealed = serde_json::from_value(answer.clone()).expect("an answer");
-    verify::answer(&sealed).expect("a spec")
 }
 
 fn sealed_again(mut answer: Value) -> Value {

@@ -1,36 +1,25 @@
 //! Repetitions at the library and the command line: rows with proofs, verified and forged; classes of every size;
 //! windows at every place of the draft, which docs/repeats.md builds on; what a weaver is told.
 
-use crate::support::{joined, words, woven};
+use crate::support::{joined, ran, verified, words, woven};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
 use weavelock::assembly::layout::Swatch;
 use weavelock::repeats::explain::How;
 use weavelock::repeats::grow::{Sizes, grow};
 use weavelock::repeats::{AsMade, Search, attempt, repeats, text};
 use weavelock::report::answer::Sealed;
 use weavelock::spec::{Bounds, ProfileSpec, Shape, Subject, Syntax, parse};
-use weavelock::verify;
 use weavelock::weave::Weave;
 
 fn profile(samples: u32) -> ProfileSpec {
     ProfileSpec { shape: Shape::Rise(0.6), lift: 1.0, cover: 1.0, samples, bounds: Bounds::Sandwich }
 }
 
-fn ran(args: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_weavelock")).args(args).output().expect("runs")
-}
-
 fn json(args: &[&str]) -> Value {
     let args: Vec<&str> = args.iter().copied().chain(["--json", "-q"]).collect();
     let out = ran(&args);
     serde_json::from_slice(&out.stdout).unwrap_or_else(|e| panic!("{e}: {args:?}\n{out:?}"))
-}
-
-fn verified(answer: &Value) -> verify::Verified {
-    let sealed: Sealed = serde_json::from_value(answer.clone()).expect("an answer");
-    verify::answer(&sealed).expect("a spec")
 }
 
 /// The seal of an answer changed on purpose, so that only the mathematics can tell.

@@ -103,3 +103,15 @@ pub fn plan_answer(joined: &Joined, source: Source) -> PlanAnswer {
     let all: Vec<PartIx> = asm.ids().collect();
     answer::plan(joined, found, &all, 0.0, None, source)
 }
+
+/// The program with these arguments.
+pub fn ran(args: &[&str]) -> std::process::Output {
+    std::process::Command::new(env!("CARGO_BIN_EXE_weavelock")).args(args).output().expect("runs")
+}
+
+/// What `verify` says of an answer as JSON.
+pub fn verified(answer: &serde_json::Value) -> weavelock::verify::Verified {
+    let sealed: weavelock::report::answer::Sealed =
+        serde_json::from_value(answer.clone()).expect("an answer");
+    weavelock::verify::answer(&sealed).expect("a spec")
+}

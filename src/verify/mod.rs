@@ -44,29 +44,29 @@ pub struct Verified {
 
 /// Reads the spec of an answer again and holds the answer against it.
 pub fn answer(sealed: &Sealed) -> Result<Verified, Faults> {
-    let source = match sealed {
-        Sealed::Check(a) => &a.source,
-        Sealed::Plan(a) => &a.source,
-        Sealed::Flex(a) => return flex::answer(a),
-        Sealed::Repeats(a) => return repeats::answer(a),
-    };
-    let file = Path::new(&source.file);
-    let spec = spec::parse(&source.text, file, Syntax::of(file, &source.text))?;
-    let joined = contact::join(&spec)?;
-    let (found, good) = match sealed {
+    match sealed {
         Sealed::Check(a) => {
-            (check(&spec, &joined, a), format!("the {} verdict and its proofs hold", word(a)))
+            let spec = parsed(&a.source)?;
+            let found = check(&spec, &contact::join(&spec)?, a);
+            Ok(verified(found, format!("the {} verdict and its proofs hold", word(a))))
         }
-        Sealed::Plan(a) => (plan(&joined, a), "every move and every proof of the plan holds".to_string()),
-        Sealed::Flex(_) | Sealed::Repeats(_) => (Ok(Proofs::new()), String::new()),
-    };
-    Ok(verified(found, good))
+        Sealed::Plan(a) => {
+            let found = plan(&rebuild(&a.source)?, a);
+            Ok(verified(found, "every move and every proof of the plan holds".into()))
+        }
+        Sealed::Flex(a) => flex::answer(a),
+        Sealed::Repeats(a) => repeats::answer(a),
+    }
+}
+
+fn parsed(source: &answer::Source) -> Result<spec::Spec, Faults> {
+    let file = Path::new(&source.file);
+    spec::parse(&source.text, file, Syntax::of(file, &source.text))
 }
 
 /// The assembly of an answer, built again.
 fn rebuild(source: &answer::Source) -> Result<Joined, Faults> {
-    let file = Path::new(&source.file);
-    contact::join(&spec::parse(&source.text, file, Syntax::of(file, &source.text))?)
+    contact::join(&parsed(source)?)
 }
 
 fn verified(found: Result<Proofs, String>, good: String) -> Verified {

@@ -15,7 +15,7 @@ use weavelock::sampling::{Beyond, checked, standing};
 use weavelock::spec;
 
 /// A folder of its own for each test, gone when the test is over.
-pub struct Folder(PathBuf);
+pub struct Folder(pub PathBuf);
 
 impl Folder {
     pub fn new(test: &str) -> Folder {
