@@ -49,6 +49,11 @@ impl Between {
             all.map(|(i, j)| (balls_a[i].toward(&balls_b[j], step), i, j)).collect();
         caps.sort_by(|x, y| y.0.angle.total_cmp(&x.0.angle).then((x.1, x.2).cmp(&(y.1, y.2))));
         for (cap, i, j) in caps {
+            // What a kept cone holds takes nothing away; most small cones lie in wide ones.
+            work.spend(self.cones.len())?;
+            if self.cones.iter().any(|c| cap.inside(c)) {
+                continue;
+            }
             work.spend(self.free.len())?;
             let near: Vec<bool> = self.free.iter().map(|s| cap.meets(s)).collect();
             if near.contains(&true) {
@@ -115,6 +120,11 @@ struct Cap {
 }
 
 impl Cap {
+    /// Whether all directions of the cap lie inside the cone.
+    fn inside(&self, cone: &Blocked) -> bool {
+        self.angle < PI / 2.0 && cone.0.iter().all(|n| n.dot(self.middle) > self.angle.sin() + SAME_ANGLE)
+    }
+
     /// Whether the cap may have a direction in common with the sector: never wrong when it says no.
     fn meets(&self, sector: &Sector) -> bool {
         let m = sector.middle();

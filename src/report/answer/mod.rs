@@ -16,10 +16,10 @@ pub use blocking::{
 };
 pub use flex::{CoreAnswer, FlexAnswer, OrbitAnswer, SymmetryOfParts, flex};
 pub use interlock::{
-    DirectionsAnswer, InterlockAnswer, InterlockWord, KeyAnswer, LockedCore, SearchedAnswer, interlock,
+    DirectionsAnswer, InterlockAnswer, InterlockWord, KeyAnswer, LockedCore, SearchedAnswer, firm, interlock,
 };
 pub use repeats::RepeatsAnswer;
-pub use sampling::{check_of, refined};
+pub use sampling::{check_of, refined, stress_of};
 pub use weave::{WeaveAnswer, weave};
 
 use crate::assembly::{Assembly, PartIx};
