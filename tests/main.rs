@@ -20,6 +20,7 @@ mod pages;
 mod plan;
 mod processes;
 mod random;
+mod release;
 mod repeats;
 mod report;
 mod second;

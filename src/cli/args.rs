@@ -64,6 +64,10 @@ pub enum Verb {
         #[arg(long, value_name = "LENGTH", value_parser = length)]
         clearance: Option<f64>,
     },
+    /// How far do parts made with air shift and tilt? `weavelock play plain.toml --clearance "0.2 mm"`
+    Play(super::play::Asked),
+    /// How much clearance releases the lock? `weavelock release plain.toml --process fdm-pla`
+    Release(super::release::Asked),
     /// Which part stops which: along a direction, or over all of them: `weavelock blocking roof.toml --sphere roof.svg`
     Blocking(super::blocking::Blocking),
     /// Does it need flexible parts? The fewest, all such sets, and the bound's proof: `weavelock flex plain.toml`

@@ -13,7 +13,9 @@ mod load;
 mod make;
 mod package;
 mod pictured;
+mod play;
 mod questions;
+mod release;
 mod repeated;
 pub mod repeats;
 mod run;
@@ -56,6 +58,8 @@ fn dispatch(args: &Args) -> Result<Told, Trouble> {
         Some(Verb::Plan { file, of, clearance }) => {
             questions::plan(&load::spec(file)?.joined()?, of, clearance.unwrap_or(0.0))
         }
+        Some(Verb::Play(asked)) => play::play(asked),
+        Some(Verb::Release(asked)) => release::release(asked),
         Some(Verb::Blocking(asked)) => blocking::blocking(&load::spec(&asked.file)?.joined()?, asked),
         Some(Verb::Flex(asked)) => flex::flex(asked),
         Some(Verb::Repeats(asked)) => repeats::repeats(asked),
