@@ -71,7 +71,8 @@ fn a_simplex_solver_finds_the_same_play() {
             let terms: Vec<_> = unknowns.entries(row).map(|(c, v)| (x[c], v)).collect();
             problem.add_constraint(&terms[..], ComparisonOp::Ge, -1.0);
         }
-        let second = problem.solve().expect("bounded").objective() / lever;
+        let outcome = problem.solve().expect("bounded");
+        let second = outcome.solution().expect("an optimum").objective() / lever;
         assert!(
             (value / second - 1.0).abs() < 1e-5,
             "{:?} {} {}: {value} and {second}",

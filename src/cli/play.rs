@@ -7,10 +7,13 @@ use super::load::{self, Placed};
 use super::questions::{argument, part};
 use super::told::{News, Told, Trouble};
 use crate::assembly::PartIx;
-use crate::play;
+use crate::play::{self, Extreme, Reach};
 use crate::report::answer::{self, AxisPlay, Followed, PlayAnswer, PlayWord};
 use crate::report::content::{Chapter, Column, Table, Tone};
+use crate::sequence::clearance::with_clearance;
+use crate::verify::follow::followed;
 use clap::Args;
+use rayon::prelude::*;
 use std::path::PathBuf;
 
 #[derive(Args, Debug)]
@@ -44,7 +47,7 @@ pub fn played(placed: &Placed, of: &[PartIx], clearance_mm: f64) -> Result<PlayA
     let found = play::play(asm, &placed.joined.patches, of, &still).map_err(|why| {
         argument(format!("not searched: {why}"), "name some parts: --of weft-0,warp-1".into())
     })?;
-    let found: Vec<Followed> = found.into_iter().map(|extreme| Followed { extreme, share: None }).collect();
+    let found = follow(placed, found, clearance_mm);
     Ok(PlayAnswer {
         verb: "play".into(),
         name: asm.name.clone(),
@@ -56,6 +59,21 @@ pub fn played(placed: &Placed, of: &[PartIx], clearance_mm: f64) -> Result<PlayA
         remarks: placed.joined.remarks.clone(),
         source: placed.source.clone(),
     })
+}
+
+/// How far the solids as made follow each extreme; nothing where there are no such solids.
+fn follow(placed: &Placed, found: Vec<Extreme>, clearance_mm: f64) -> Vec<Followed> {
+    let (asm, patches) = (&placed.joined.assembly, &placed.joined.patches);
+    let clearance = clearance_mm / asm.mm_per_unit;
+    let Ok(made) = with_clearance(asm, patches, clearance) else {
+        return found.into_iter().map(|extreme| Followed { extreme, share: None }).collect();
+    };
+    let share = |e: &Extreme| match &e.reach {
+        Reach::Held { twists, .. } => followed(&made, twists, 2.0 * clearance),
+        Reach::Endless { .. } | Reach::Unsolved { .. } => None,
+    };
+    let followed = |extreme: Extreme| Followed { share: share(&extreme), extreme };
+    found.into_par_iter().map(followed).collect()
 }
 
 pub fn told(a: &PlayAnswer) -> Told {

@@ -7,6 +7,7 @@ pub mod certificate;
 mod dyadic;
 mod field;
 mod flex;
+pub mod follow;
 mod interlock;
 mod mend;
 mod motion;
