@@ -6,6 +6,7 @@ mod blocking;
 mod certificates;
 mod cli;
 mod exact;
+mod examples;
 mod fab;
 mod flex;
 mod golden;

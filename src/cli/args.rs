@@ -113,13 +113,19 @@ pub enum Verb {
     Verify { answer: PathBuf },
     /// The table over all [a,b,c] up to a size, with its picture: `weavelock atlas --max-n 6 --out atlas`
     Atlas(super::atlas::Asked),
-    /// The page for a file, one self-contained HTML file
+    /// The page for a file, one self-contained HTML file: `weavelock report plain.toml --out plain.html`
     Report {
         file: PathBuf,
         #[arg(long, default_value = "report.html")]
         out: PathBuf,
     },
-    /// JSON Schema of the files in and of every answer
+    /// A commented spec from four questions, or none: `weavelock new mine.toml --defaults`
+    New(super::new::Asked),
+    /// Completions for a shell: `weavelock completions bash`
+    Completions { shell: clap_complete::Shell },
+    /// The manual page, in roff: `weavelock man`
+    Man,
+    /// JSON Schema of the files in and of every answer: `weavelock schema`
     Schema,
 }
 

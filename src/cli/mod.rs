@@ -11,6 +11,7 @@ mod hands;
 mod interlock;
 mod load;
 mod make;
+pub mod new;
 mod package;
 mod pictured;
 mod play;
@@ -20,6 +21,7 @@ mod repeated;
 pub mod repeats;
 mod run;
 mod schema;
+mod shell;
 mod told;
 mod words;
 
@@ -73,6 +75,9 @@ fn dispatch(args: &Args) -> Result<Told, Trouble> {
         Some(Verb::Verify { answer }) => questions::verify(answer),
         Some(Verb::Atlas(asked)) => atlas::atlas(asked, &args.common),
         Some(Verb::Report { file, out }) => run::report(file, out, &args.common),
+        Some(Verb::New(asked)) => new::new(asked),
+        Some(Verb::Completions { shell }) => shell::completions(*shell),
+        Some(Verb::Man) => shell::man(),
         Some(Verb::Schema) => schema::schema(),
     }
 }

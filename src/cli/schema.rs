@@ -23,6 +23,7 @@ pub fn schema() -> Result<Told, Trouble> {
         ("plan", schema_for!(PlanAnswer)),
         ("play", schema_for!(PlayAnswer)),
         ("release", schema_for!(ReleaseAnswer)),
+        ("new", schema_for!(super::new::NewAnswer)),
         ("blocking", schema_for!(BlockingAnswer)),
         ("flex", schema_for!(FlexAnswer)),
         ("repeats", schema_for!(RepeatsAnswer)),
