@@ -13,6 +13,7 @@ pub mod clearance;
 pub mod field;
 mod gap;
 pub mod group;
+pub mod lattice;
 pub mod leave;
 mod singles;
 
