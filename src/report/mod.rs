@@ -10,5 +10,6 @@ pub mod export;
 pub mod file;
 pub mod graphs;
 pub mod page;
+pub mod steps;
 pub mod text;
 pub mod words;

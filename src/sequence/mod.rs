@@ -15,9 +15,11 @@ mod gap;
 pub mod group;
 pub mod lattice;
 pub mod leave;
+mod motion;
 mod singles;
 
-pub use answer::{Kind, Order, Outcome, Plan, Searched, Step, Straight, Stuck};
+pub use answer::{Order, Outcome, Plan, Searched, Step, Straight, Stuck};
+pub use motion::{Ends, Motion, Mover, Rigid, Screw, Shift};
 
 use crate::assembly::{Assembly, PartIx};
 use crate::contact::Patch;

@@ -132,21 +132,24 @@ pub fn moving(assembly: &Assembly, motion: &Motion) -> Figure {
     }
 }
 
-/// One move of a plan as it is put together: the moved parts where they come from, with an arrow behind them, and
+/// One move of a plan as it is put together, as from the parts' places in the assembly: the moved parts where they come from, with an arrow behind them, and
 /// the parts that they join in place. Parts of other moves are left out, yet the view is that of all.
 pub fn step(assembly: &Assembly, step: &Step) -> Figure {
     let mut scene = Scene::of(assembly, View::default());
-    let away = DVec3::from_array(step.direction) * step.distance;
+    let movers = step.motion.movers(&step.parts);
     let size = extent(&scene);
-    let mut pushed = Vec::new();
+    let (mut pushed, mut away) = (Vec::new(), DVec3::ZERO);
     for (part, item) in assembly.parts.iter().zip(&mut scene.items) {
-        if step.parts.contains(&part.id) {
-            item.offset = away;
+        if let Some((_, motion)) = movers.iter().find(|(parts, _)| parts.contains(&part.id)) {
+            let before = item.points().sum::<DVec3>();
+            item.pose = motion.at(1.0) * item.pose;
+            away += item.points().sum::<DVec3>() - before;
             pushed.extend(item.points());
         } else if !step.stays.contains(&part.id) {
             item.opacity = Opacity::Hidden;
         }
     }
+    away /= pushed.len().max(1) as f64;
     scene
         .items
         .extend(push(&pushed, away, size * 0.25).map(|s| Item::sign(&s, Colour::srgb(palette::MOTION))));
@@ -154,7 +157,10 @@ pub fn step(assembly: &Assembly, step: &Step) -> Figure {
     Figure {
         name: "step",
         alt: format!("{moved} on the way to {}, with an arrow.", step.stays.join(", ")),
-        caption: format!("{moved}: {:.1} mm straight in.", step.distance_mm),
+        caption: match step.motion.straight() {
+            Some(shift) => format!("{moved}: {:.1} mm straight in.", shift.distance_mm),
+            None => format!("{moved}: turned in."),
+        },
         scene,
     }
 }
