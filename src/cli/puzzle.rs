@@ -5,12 +5,16 @@
 //! the bounds on counted work.
 
 use super::args::PuzzleArgs;
-use super::load::Loaded;
+use super::load::{Loaded, Placed};
+use super::questions::locked;
+use crate::assembly::PartIx;
 use crate::assembly::voxel;
 use crate::assembly::voxel::cover::{Covered, assemblies};
 use crate::fault::{Fault, Faults};
-use crate::report::answer::Source;
-use crate::sequence::lattice::{apart::written, on_lattice};
+use crate::report::answer::{Certificate, Source};
+use crate::sequence::lattice::answer::Asked;
+use crate::sequence::lattice::{self, NoLattice, apart::written, on_lattice};
+use crate::sequence::{Outcome, Plan};
 use crate::spec::puzzle::{self, Choice, Puzzle, Solution, text::text};
 use crate::spec::{Spec, Subject};
 use std::ops::ControlFlow;
@@ -127,4 +131,60 @@ fn comes_apart(name: &str, puzzle: &Puzzle, solution: &Solution) -> bool {
     let all: Vec<_> = asm.ids().collect();
     let found = on_lattice(&asm, &all, Some(1.0), |_| 1, Some(MOST_STATES));
     found.is_ok_and(|f| f.apart.whole.kept().is_empty())
+}
+
+/// Any plan of a search, or why it was not made.
+type Searched = Result<Plan<Certificate>, String>;
+
+/// The plan for these parts. Pieces of a puzzle are taken apart on their lattice first, so that moves are counted as
+/// puzzlers do; other parts by `straight` moves first. Where one way does not take all apart, the other is asked.
+pub fn plan(
+    placed: &Placed,
+    of: &[PartIx],
+    clearance_mm: f64,
+    straight: impl FnOnce() -> Searched,
+) -> Searched {
+    let is_whole = |plan: &Plan<Certificate>| plan.outcome == Outcome::Assembled;
+    if puzzle_of(placed).is_some() && clearance_mm == 0.0 {
+        return match on_its_lattice(placed, of) {
+            Ok(plan) if is_whole(&plan) => Ok(plan),
+            Ok(plan) => Ok(straight().ok().filter(is_whole).unwrap_or(plan)),
+            Err(_) => straight(),
+        };
+    }
+    match straight() {
+        Ok(plan) if is_whole(&plan) => Ok(plan),
+        found => match on_its_lattice(placed, of) {
+            Ok(plan) if clearance_mm == 0.0 => Ok(plan),
+            // With air between them the parts can do all that they can do without; fewer moves may do.
+            Ok(plan) if is_whole(&plan) => Ok(Plan { counted: None, ..plan }),
+            _ => found,
+        },
+    }
+}
+
+fn puzzle_of(placed: &Placed) -> Option<&Puzzle> {
+    match &placed.spec.subject {
+        Subject::Meshes(meshes) => meshes.puzzle.as_deref(),
+        Subject::Woven(_) => None,
+    }
+}
+
+fn on_its_lattice(placed: &Placed, of: &[PartIx]) -> Result<Plan<Certificate>, NoLattice> {
+    let joined = &placed.joined;
+    let weights = puzzle_of(placed).map(weights);
+    let asked = Asked {
+        asm: &joined.assembly,
+        parts: of,
+        step: weights.is_some().then_some(1.0),
+        weight: |p: PartIx| weights.as_ref().and_then(|w| w.get(p.at()).copied()).unwrap_or(1),
+    };
+    lattice::answer::plan(&asked, |set| locked(joined, set))
+}
+
+/// Of the pieces that are used, in their order.
+fn weights(puzzle: &Puzzle) -> Vec<i32> {
+    let placements = puzzle.solution.iter().flat_map(|s| &s.placements);
+    let used = puzzle.problem.shapes().zip(placements).filter(|(_, p)| p.is_some());
+    used.map(|(shape, _)| puzzle.shapes[shape].weight).collect()
 }

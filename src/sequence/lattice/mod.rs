@@ -5,6 +5,7 @@
 //! where that is said. Exhaustive over translations where a set is `Exhausted`. Not promised: turns, and plans of the
 //! fewest moves in all.
 
+pub mod answer;
 pub mod apart;
 pub mod bricks;
 pub mod moves;
@@ -14,8 +15,10 @@ pub mod states;
 
 use crate::assembly::{Assembly, PartIx};
 use apart::{Apart, take_apart};
-use bricks::{Lattice, NoLattice, pieces};
-use search::Scene;
+pub use bricks::NoLattice;
+
+use bricks::{Lattice, pieces};
+use search::{Piece, Scene};
 
 /// Bytes that positions may take in all, kept or not: 768 MiB, so that a machine of 2 GiB holds a search.
 const MOST_BYTES: usize = 768 << 20;
@@ -28,6 +31,7 @@ const BYTES_BESIDE: usize = 20;
 #[derive(Clone, Debug)]
 pub struct OnLattice {
     pub lattice: Lattice,
+    pub pieces: Vec<Piece>,
     pub apart: Apart,
     /// The bound on positions.
     pub most: usize,
@@ -46,6 +50,7 @@ pub fn on_lattice(
     let (lattice, pieces) = pieces(asm, parts, step, weight)?;
     let most = most.unwrap_or(MOST_BYTES / (3 * parts.len() + BYTES_BESIDE));
     let all: Vec<usize> = (0..parts.len()).collect();
-    let apart = take_apart(&Scene::new(pieces), &all, most);
-    Ok(OnLattice { lattice, apart, most })
+    let scene = Scene::new(pieces);
+    let apart = take_apart(&scene, &all, most);
+    Ok(OnLattice { lattice, pieces: scene.pieces, apart, most })
 }
