@@ -2,7 +2,7 @@
 //!
 //! Not promised: anything beyond what `play` promises of first order, and what was followed of it.
 
-use super::args::length;
+use super::args::{PuzzleArgs, length};
 use super::load::{self, Placed};
 use super::questions::{argument, part};
 use super::told::{News, Told, Trouble};
@@ -27,8 +27,8 @@ pub struct Asked {
     pub of: Vec<String>,
 }
 
-pub fn play(asked: &Asked) -> Result<Told, Trouble> {
-    let placed = load::spec(&asked.file)?.joined()?;
+pub fn play(asked: &Asked, puzzle: &PuzzleArgs) -> Result<Told, Trouble> {
+    let placed = load::spec(&asked.file, puzzle)?.joined()?;
     if asked.clearance <= 0.0 {
         let hint = "give the air that the parts are made with, as --clearance \"0.2 mm\"".to_string();
         return Err(argument(format!("{} mm of air leave no play", asked.clearance), hint).into());

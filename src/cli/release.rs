@@ -2,6 +2,7 @@
 //!
 //! Not promised: anything beyond what `release` and the planner promise.
 
+use super::args::PuzzleArgs;
 use super::load::{self, Placed};
 use super::questions::{locked, planned};
 use super::told::{News, Told, Trouble};
@@ -29,8 +30,8 @@ pub struct Asked {
     pub process: Option<String>,
 }
 
-pub fn release(asked: &Asked) -> Result<Told, Trouble> {
-    let placed = load::spec(&asked.file)?.joined()?;
+pub fn release(asked: &Asked, puzzle: &PuzzleArgs) -> Result<Told, Trouble> {
+    let placed = load::spec(&asked.file, puzzle)?.joined()?;
     let wrong = |e: weavelock_fab::process::ProcessError| Trouble::Word(format!("error: {e}"));
     let process = asked.process.as_deref().map(Process::find).transpose().map_err(wrong)?;
     let process = process.map(|p| (p.name, p.clearance.value));

@@ -13,6 +13,7 @@ pub mod clearance;
 pub mod field;
 mod gap;
 pub mod group;
+pub mod lattice;
 pub mod leave;
 mod motion;
 mod singles;
@@ -158,6 +159,14 @@ impl<'f, 'a> Work<'f, 'a> {
             _ => Outcome::NotFound,
         };
         let touch = field.touch.depth();
-        Plan { outcome, order: Order::Disassembly, steps, stuck, searched: self.searched, touch }
+        Plan {
+            outcome,
+            order: Order::Disassembly,
+            steps,
+            stuck,
+            searched: self.searched,
+            touch,
+            counted: None,
+        }
     }
 }

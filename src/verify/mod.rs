@@ -149,6 +149,9 @@ fn plan(joined: &Joined, a: &PlanAnswer) -> Result<Proofs, String> {
         }
         plan::Checked::Undecided { why } => return Err(format!("could not be decided: {why}")),
     }
+    if let Some(claimed) = &a.plan.counted {
+        plan::counted(&a.plan.steps, &a.of, claimed)?;
+    }
     for stuck in &a.plan.stuck {
         if let Some(lock) = &stuck.lock {
             same("clearance of a lock", a.clearance_mm, 0.0)?;
