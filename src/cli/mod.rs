@@ -12,6 +12,7 @@ mod interlock;
 mod load;
 mod make;
 mod package;
+mod paged;
 mod pictured;
 mod questions;
 mod repeated;

@@ -7,6 +7,7 @@
 //! solid -> mesh -> scene -> camera -> layers (which facet does each sample see) -> light -> ink -> image
 //! ```
 
+pub mod arcs;
 pub mod camera;
 pub mod figures;
 pub mod glyph;
