@@ -120,7 +120,7 @@ impl Browser {
     fn load(&mut self, html: &str) {
         let file = self.folder.join("page.html");
         std::fs::write(&file, html).expect("a page");
-        let size = json!({"width": 1000, "height": 800, "deviceScaleFactor": 1, "mobile": false});
+        let size = json!({"width": 700, "height": 700, "deviceScaleFactor": 1, "mobile": false});
         self.call("Emulation.setDeviceMetricsOverride", size);
         self.call("Page.navigate", json!({"url": format!("file://{}", file.display())}));
         let ready = "document.readyState === 'complete' && (!!window.weavelock || !!document.querySelector('[role=status]'))";

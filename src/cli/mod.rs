@@ -6,14 +6,18 @@ pub mod args;
 pub mod atlas;
 mod blocking;
 mod check;
+mod draw;
+mod exported;
 pub mod flex;
 mod hands;
 mod interlock;
 mod load;
 mod make;
+mod molded;
 mod package;
 mod paged;
 mod pictured;
+mod planned;
 mod questions;
 mod repeated;
 pub mod repeats;
@@ -64,12 +68,11 @@ fn dispatch(args: &Args) -> Result<Told, Trouble> {
         Some(Verb::Weave { subject, svg, wif }) => questions::weave(subject, svg.as_deref(), wif.as_deref()),
         Some(Verb::Fab(asked)) => package::fab(&load::spec(&asked.file)?.joined()?, asked, &args.common),
         Some(Verb::Processes { name }) => package::processes(name.as_deref()),
-        Some(Verb::Export { file, format, layout, out }) => {
-            make::export(&load::spec(file)?.joined()?, *format, *layout, out)
-        }
+        Some(Verb::Export(asked)) => exported::export(&load::spec(&asked.file)?.joined()?, asked),
+        Some(Verb::Draw(asked)) => draw::draw(&load::spec(&asked.file)?.joined()?, asked),
         Some(Verb::Verify { answer }) => questions::verify(answer),
         Some(Verb::Atlas(asked)) => atlas::atlas(asked, &args.common),
-        Some(Verb::Report { file, out }) => run::report(file, out, &args.common),
+        Some(Verb::Report { file, out, mold }) => run::report(file, out, mold.as_deref(), &args.common),
         Some(Verb::Schema) => schema::schema(),
     }
 }

@@ -8,6 +8,7 @@ use super::flex;
 use super::hands;
 use super::load::{self, Loaded, Placed};
 use super::make;
+use super::molded;
 use super::paged;
 use super::questions;
 use super::repeats;
@@ -34,12 +35,19 @@ pub fn file(file: &Path, out: &Path, common: &Common) -> Result<Told, Trouble> {
     everything(load::spec(file)?, out, common)
 }
 
-/// The page alone, without making parts.
-pub fn report(file: &Path, out: &Path, common: &Common) -> Result<Told, Trouble> {
+/// The page alone, without making parts; with the mold of one part where that is asked for.
+pub fn report(file: &Path, out: &Path, mold: Option<&str>, common: &Common) -> Result<Told, Trouble> {
     let placed = load::spec(file)?.joined()?;
+    let part = mold.map(|id| questions::part(&placed.joined, id)).transpose()?;
     let asked = ask(&placed, common)?;
     let none = || Answer::not_run("`weavelock fab` makes the parts");
-    write_whole(out, page(&input(&placed, &asked, None, none(), none())).as_bytes())?;
+    let mut input = input(&placed, &asked, None, none(), none());
+    if let Some(part) = part {
+        let (exhibit, chapter) = molded::exhibit(&placed, part, molded::MoldRoute::Rigid)?;
+        input.exhibits.extend(exhibit);
+        input.molds = Answer::Given(chapter);
+    }
+    write_whole(out, page(&input).as_bytes())?;
     let headline = format!("The page is {}.", out.display());
     let chapter = Chapter { headline, ..Chapter::default() };
     let files = Files { verb: "report", files: vec![out.display().to_string()] };
@@ -251,7 +259,9 @@ fn input(
         verdict: first_chapter(&asked.check),
         plan: first_chapter(&asked.plan),
         blocking: paged::blocking(placed),
-        molds: Answer::not_run("`weavelock fab` makes molds for parts that are cast"),
+        molds: Answer::not_run(
+            "`weavelock fab` makes molds for parts that are cast; `weavelock report --mold PART` shows one",
+        ),
         flexible: chapter(&asked.flex),
         repeats: chapter(&asked.repeats),
         chirality: chapter(&asked.chirality),

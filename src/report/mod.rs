@@ -9,6 +9,8 @@ pub mod draw;
 pub mod export;
 pub mod file;
 pub mod graphs;
+mod html;
+pub mod instructions;
 pub mod moves;
 pub mod page;
 pub mod text;

@@ -4,7 +4,8 @@
 //! nothing; no script runs but the viewer's own, named by its hash. Not promised: any knowledge of geometry, or that a
 //! picture's bytes are a picture.
 
-use super::content::{Align, Answer, Chapter, Format, Picture, Table, Tone, harmless};
+use super::content::{Align, Answer, Chapter, Picture, Table, Tone};
+use super::html::Html;
 use super::viewer::{self, Exhibit};
 
 /// Everything that the page says. Chapters that nobody asked for are [`Answer::NotRun`] and are shown so.
@@ -80,7 +81,7 @@ pub fn page(input: &PageInput) -> String {
     h.raw("</main>\n<footer><p>Made by weavelock. This file is complete: it loads nothing from elsewhere.</p></footer>\n");
     script(&mut h, &input.exhibits);
     h.raw("</body>\n</html>\n");
-    h.0
+    h.into_text()
 }
 
 fn header(h: &mut Html, input: &PageInput) {
@@ -113,7 +114,7 @@ fn script(h: &mut Html, exhibits: &[Exhibit]) {
     }
     h.raw("<script type=\"application/json\" id=\"viewer-data\">");
     // Safe inside a script element by its making.
-    h.0.push_str(&viewer::payload(exhibits));
+    h.data(&viewer::payload(exhibits));
     h.raw("</script>\n<script>").raw(viewer::SCRIPT).raw("</script>\n");
 }
 
@@ -194,11 +195,7 @@ fn pictures(h: &mut Html, pictures: &[Picture]) {
             .raw("\" height=\"")
             .text(&p.height.to_string());
         h.raw("\" alt=\"").text(&p.alt).raw("\" src=\"");
-        match &p.format {
-            Format::Png(bytes) => h.raw("data:image/png;base64,").base64(bytes),
-            Format::Svg(text) => h.raw("data:image/svg+xml;base64,").base64(text.as_bytes()),
-        };
-        h.raw("\">");
+        h.image(&p.format).raw("\">");
         if !p.caption.is_empty() {
             h.raw("<figcaption>").text(&p.caption).raw("</figcaption>");
         }
@@ -264,36 +261,4 @@ fn limits(h: &mut Html, limits: &[String]) {
         h.raw("</ul>\n");
     }
     h.raw("</section>\n");
-}
-
-/// Markup under construction. Only words of this program get in raw; a caller's string has no way around [`Html::text`].
-#[derive(Default)]
-struct Html(String);
-
-impl Html {
-    fn raw(&mut self, markup: &'static str) -> &mut Html {
-        self.0.push_str(markup);
-        self
-    }
-
-    /// Safe between tags and inside double quotes.
-    fn text(&mut self, text: &str) -> &mut Html {
-        for c in text.chars() {
-            match c {
-                '&' => self.0.push_str("&amp;"),
-                '<' => self.0.push_str("&lt;"),
-                '>' => self.0.push_str("&gt;"),
-                '"' => self.0.push_str("&quot;"),
-                '\'' => self.0.push_str("&#39;"),
-                '\n' => self.0.push('\n'),
-                c => self.0.push(harmless(c)),
-            }
-        }
-        self
-    }
-
-    fn base64(&mut self, bytes: &[u8]) -> &mut Html {
-        self.0.push_str(&viewer::base64(bytes));
-        self
-    }
 }

@@ -21,11 +21,13 @@ pub mod palette;
 pub mod scene;
 pub mod sheet;
 pub mod sphere;
+pub mod steps;
 mod strokes;
+pub mod vector;
 
 pub use camera::{Projection, View};
 pub use image::{Image, Size, beside, write_png};
 pub use mesh::Mesh;
-pub use paint::render;
+pub use paint::{Pen, render, render_with};
 pub use palette::Colour;
 pub use scene::{Background, Item, Opacity, Scene, Shadow};

@@ -171,6 +171,8 @@ function controls(root, shown, canvas, exhibits) {
   };
   const axis = select(["no section", "across x", "across y", "across z"], (k) => {
     state.section.axis = k - 1;
+    // The half toward the viewer goes.
+    if (k) flip.checked = state.section.flip = frame(state.view.azimuth, state.view.elevation).back[k - 1] < 0;
     change();
   });
   const place = range({ min: -1, max: 1, step: 0.005, value: 0 }, (v) => (state.section.at = v));

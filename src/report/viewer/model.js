@@ -7,13 +7,13 @@ function bytes(text) {
 const floats = (text) => new Float32Array(bytes(text));
 const whole = (text) => new Uint32Array(bytes(text));
 
-// Cells across a shape's longest side in its coarse copy: about a pixel and a half each where 2,000 parts share 1,000
-// pixels (22 to a part), so that it hardly shows while things move.
-const CELLS = 16;
+// Cells across a shape's longest side in its coarse copy: about three pixels each where the parts share a picture 1,000
+// pixels wide, so that it hardly shows while things move.
+const cellsFor = (count) => clamp(Math.round(350 / Math.sqrt(count)), 6, 24);
 
 // Corners of one cell (and, for light, of one side of space) become one; triangles that lose a corner go.
-function coarse(shape) {
-  const { positions, normals, corners } = shape, size = (2 * shape.radius) / CELLS || 1;
+function coarse(shape, cells) {
+  const { positions, normals, corners } = shape, size = (2 * shape.radius) / cells || 1;
   const places = new Map(), index = new Map(), p = [], n = [], t = [];
   const keyOf = (k) => [0, 1, 2].map((d) => Math.floor(positions[3 * k + d] / size)).join();
   const corner = (k) => {

@@ -8,7 +8,7 @@ const PALE = [196, 196, 192];
 const PICKED = [230, 159, 0], STOPS = [22, 92, 152], TOUCHES = [166, 210, 236];
 const DIRECTIONS = ["+x", "−x", "+y", "−y", "+z", "−z"];
 // More triangles than this are drawn from the coarse copies while the picture moves: a phone draws so many in time.
-const MOST_TRIANGLES = 300000;
+const MOST_TRIANGLES = 150000;
 
 function show(exhibits, stage, canvas) {
   const loaded = new Map();
@@ -144,7 +144,7 @@ function show(exhibits, stage, canvas) {
     const key = add(add(scale(right, -0.55), scale(up, 0.65)), scale(back, 0.55));
     return {
       see: times(perspective(SLOPE, aspect, near, far), seen), eye, key: scale(key, 1 / norm(key)), cut: cut(),
-      sectioned: state.section.axis >= 0, rough: state.moving && exhibit.triangles > MOST_TRIANGLES, width, height,
+      sectioned: state.section.axis >= 0, rough: state.moving && exhibit.triangles > MOST_TRIANGLES, cells: cellsFor(exhibit.count), width, height,
     };
   };
 

@@ -102,8 +102,8 @@ function stage(canvas) {
   const load = (shape) => {
     const whole = { fine: solid(shape), lines: lines(shape) };
     return {
-      draw(runs, { rough, what }) {
-        if (rough && !whole.rough) whole.rough = solid(coarse(shape));
+      draw(runs, { rough, what, cells }) {
+        if (rough && !whole.rough) whole.rough = solid(coarse(shape, cells));
         const part = what === "lines" ? whole.lines : rough ? whole.rough : whole.fine;
         gl.bindVertexArray(part.vao);
         for (const { first, count } of runs) {
