@@ -3,6 +3,7 @@
 mod atlas;
 mod bad_input;
 mod blocking;
+mod browser;
 mod certificates;
 mod cli;
 mod exact;

@@ -6,14 +6,19 @@ pub mod args;
 pub mod atlas;
 mod blocking;
 mod check;
+mod draw;
+mod exported;
 pub mod flex;
 mod hands;
 mod interlock;
 mod load;
 mod make;
+mod molded;
 pub mod new;
 mod package;
+mod paged;
 mod pictured;
+mod planned;
 mod play;
 mod puzzle;
 mod questions;
@@ -73,12 +78,11 @@ fn dispatch(args: &Args) -> Result<Told, Trouble> {
             package::fab(&load::spec(&asked.file, puzzle)?.joined()?, asked, &args.common)
         }
         Some(Verb::Processes { name }) => package::processes(name.as_deref()),
-        Some(Verb::Export { file, format, layout, out }) => {
-            make::export(&load::spec(file, puzzle)?.joined()?, *format, *layout, out)
-        }
+        Some(Verb::Export(asked)) => exported::export(&load::spec(&asked.file, puzzle)?.joined()?, asked),
+        Some(Verb::Draw(asked)) => draw::draw(&load::spec(&asked.file, puzzle)?.joined()?, asked),
         Some(Verb::Verify { answer }) => questions::verify(answer),
         Some(Verb::Atlas(asked)) => atlas::atlas(asked, &args.common),
-        Some(Verb::Report { file, out }) => run::report(file, out, &args.common),
+        Some(Verb::Report { file, out, mold }) => run::report(file, out, mold.as_deref(), &args.common),
         Some(Verb::New(asked)) => new::new(asked),
         Some(Verb::Completions { shell }) => shell::completions(*shell),
         Some(Verb::Man) => shell::man(),
