@@ -20,7 +20,7 @@ const FLOW: [&[&str]; 18] = [
     &["cores"],
     &["sequence"],
     &["made"],
-    &["repeats", "flex", "chirality", "fabricate", "sampling", "interlock"],
+    &["repeats", "flex", "chirality", "fabricate", "sampling", "interlock", "play", "release"],
     &["report"],
     &["verify", "atlas"],
     &["cli"],
