@@ -10,7 +10,6 @@ use super::questions::locked;
 use crate::assembly::PartIx;
 use crate::assembly::voxel;
 use crate::assembly::voxel::cover::{Covered, assemblies};
-use crate::cores::Contacts;
 use crate::fault::{Fault, Faults};
 use crate::report::answer::{Certificate, Source};
 use crate::sequence::lattice::answer::Asked;
@@ -180,8 +179,7 @@ fn on_its_lattice(placed: &Placed, of: &[PartIx]) -> Result<Plan<Certificate>, N
         step: weights.is_some().then_some(1.0),
         weight: |p: PartIx| weights.as_ref().and_then(|w| w.get(p.at()).copied()).unwrap_or(1),
     };
-    let contacts = Contacts::new(joined.touching());
-    lattice::answer::plan(&asked, |set| locked(&contacts, set))
+    lattice::answer::plan(&asked, |set| locked(joined, set))
 }
 
 /// Of the pieces that are used, in their order.

@@ -44,8 +44,7 @@ pub fn planned(placed: &Placed, of: &[PartIx], clearance_mm: f64) -> PlanAnswer 
                 .map_err(|e| e.to_string())
                 .and_then(|made| sequence::plan_of(&made, of, &[], |_| None).map_err(|e| e.to_string()))
         } else {
-            let contacts = Contacts::new(joined.touching());
-            sequence::plan_of(asm, of, patches, |set| locked(&contacts, set)).map_err(|e| e.to_string())
+            sequence::plan_of(asm, of, patches, |set| locked(joined, set)).map_err(|e| e.to_string())
         }
     });
     let (plan, why) = found.map_or_else(|why| (nothing(), Some(why)), |plan| (plan, None));
@@ -93,11 +92,12 @@ fn nothing() -> Plan<Certificate> {
 }
 
 /// The proof that a set that stayed together is locked, where it holds whatever the files' digits leave open.
-pub fn locked(contacts: &Contacts, set: &[PartIx]) -> Option<Certificate> {
-    let core = cores::locked(contacts, &set.iter().copied().collect())?;
-    let core = cores::firm(contacts, core).filter(|c| c.firm == Firm::Holds)?;
+pub fn locked(joined: &Joined, set: &[PartIx]) -> Option<Certificate> {
+    let contacts = Contacts::new(joined.touching());
+    let core = cores::locked(&contacts, &set.iter().copied().collect())?;
+    let core = cores::firm(&contacts, core).filter(|c| c.firm == Firm::Holds)?;
     let still: Vec<PartIx> = core.still.iter().copied().collect();
-    Some(answer::certificate(contacts.touching.assembly, &still, &core.stress))
+    Some(answer::certificate(&joined.assembly, &still, &core.stress))
 }
 
 pub fn plan(placed: &Placed, of: &[String], clearance_mm: f64) -> Result<Told, Trouble> {
