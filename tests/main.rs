@@ -19,6 +19,7 @@ mod package;
 mod pages;
 mod plan;
 mod processes;
+mod puzzle;
 mod random;
 mod repeats;
 mod report;
