@@ -7,7 +7,7 @@
     reason = "these texts are help for a terminal; brackets are no links"
 )]
 
-use clap::{Args as ClapArgs, Parser, Subcommand, ValueEnum};
+use clap::{Args as ClapArgs, Parser, Subcommand};
 use std::path::PathBuf;
 
 /// Decides whether an assembly of solid parts locks, proves it, plans how it goes together, makes its parts.
@@ -87,6 +87,10 @@ pub enum Verb {
         #[arg(long, value_name = "LENGTH", value_parser = length)]
         clearance: Option<f64>,
     },
+    /// How far do parts made with air shift and tilt? `weavelock play plain.toml --clearance "0.2 mm"`
+    Play(super::play::Asked),
+    /// How much clearance releases the lock? `weavelock release plain.toml --process fdm-pla`
+    Release(super::release::Asked),
     /// Which part stops which: along a direction, or over all of them: `weavelock blocking roof.toml --sphere roof.svg`
     Blocking(super::blocking::Blocking),
     /// Does it need flexible parts? The fewest, all such sets, and the bound's proof: `weavelock flex plain.toml`
@@ -117,28 +121,30 @@ pub enum Verb {
     Fab(Fab),
     /// The processes that come along; with a name the file itself, to copy: `weavelock processes fdm-pla > my.toml`
     Processes { name: Option<String> },
-    /// The parts as they are, in place or one by one, in mm: `weavelock export plain.toml --as obj`
-    Export {
-        file: PathBuf,
-        #[arg(long = "as", value_enum, default_value = "stl")]
-        format: Format,
-        /// One file with all parts in place, or a file for each part
-        #[arg(long, value_enum, default_value = "parts")]
-        layout: Together,
-        #[arg(long, default_value = "export")]
-        out: PathBuf,
-    },
+    /// Files for other programs, in mm as the parts touch: `weavelock export plain.toml --out plain.glb`
+    Export(super::exported::Export),
+    /// A picture or printable instructions, without a browser: `weavelock draw plain.toml --what exploded --out a.svg`
+    Draw(Box<super::draw::Draw>),
     /// Re-checks a certificate or plan without the solver that made it: `weavelock verify out/check.json`
     Verify { answer: PathBuf },
     /// The table over all [a,b,c] up to a size, with its picture: `weavelock atlas --max-n 6 --out atlas`
     Atlas(super::atlas::Asked),
-    /// The page for a file, one self-contained HTML file
+    /// The page for a file, one self-contained HTML file: `weavelock report plain.toml --out plain.html`
     Report {
         file: PathBuf,
         #[arg(long, default_value = "report.html")]
         out: PathBuf,
+        /// Also make a mold of this part, to be seen as it opens: `--mold weft-0`
+        #[arg(long, value_name = "PART")]
+        mold: Option<String>,
     },
-    /// JSON Schema of the files in and of every answer
+    /// A commented spec from four questions, or none: `weavelock new mine.toml --defaults`
+    New(super::new::Asked),
+    /// Completions for a shell: `weavelock completions bash`
+    Completions { shell: clap_complete::Shell },
+    /// The manual page, in roff: `weavelock man`
+    Man,
+    /// JSON Schema of the files in and of every answer: `weavelock schema`
     Schema,
 }
 
@@ -175,20 +181,6 @@ pub struct Fab {
     /// Also check with OpenSCAD, PrusaSlicer (information and slicing) and ADMesh, where installed
     #[arg(long)]
     pub check: bool,
-}
-
-#[derive(ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Format {
-    Stl,
-    Obj,
-}
-
-#[derive(ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Together {
-    /// A file for each part
-    Parts,
-    /// One file
-    Whole,
 }
 
 /// A number counted from 1.

@@ -6,19 +6,28 @@ pub mod args;
 pub mod atlas;
 mod blocking;
 mod check;
+mod draw;
+mod exported;
 pub mod flex;
 mod hands;
 mod interlock;
 mod load;
 mod make;
+mod molded;
+pub mod new;
 mod package;
+mod paged;
 mod pictured;
+mod planned;
+mod play;
 mod puzzle;
 mod questions;
+mod release;
 mod repeated;
 pub mod repeats;
 mod run;
 mod schema;
+mod shell;
 mod told;
 mod words;
 
@@ -58,6 +67,8 @@ fn dispatch(args: &Args) -> Result<Told, Trouble> {
         Some(Verb::Plan { file, of, clearance }) => {
             questions::plan(&load::spec(file, puzzle)?.joined()?, of, clearance.unwrap_or(0.0))
         }
+        Some(Verb::Play(asked)) => play::play(asked, puzzle),
+        Some(Verb::Release(asked)) => release::release(asked, puzzle),
         Some(Verb::Blocking(asked)) => blocking::blocking(&load::spec(&asked.file, puzzle)?.joined()?, asked),
         Some(Verb::Flex(asked)) => flex::flex(asked, puzzle),
         Some(Verb::Repeats(asked)) => repeats::repeats(asked),
@@ -67,12 +78,14 @@ fn dispatch(args: &Args) -> Result<Told, Trouble> {
             package::fab(&load::spec(&asked.file, puzzle)?.joined()?, asked, &args.common)
         }
         Some(Verb::Processes { name }) => package::processes(name.as_deref()),
-        Some(Verb::Export { file, format, layout, out }) => {
-            make::export(&load::spec(file, puzzle)?.joined()?, *format, *layout, out)
-        }
+        Some(Verb::Export(asked)) => exported::export(&load::spec(&asked.file, puzzle)?.joined()?, asked),
+        Some(Verb::Draw(asked)) => draw::draw(&load::spec(&asked.file, puzzle)?.joined()?, asked),
         Some(Verb::Verify { answer }) => questions::verify(answer),
         Some(Verb::Atlas(asked)) => atlas::atlas(asked, &args.common),
-        Some(Verb::Report { file, out }) => run::report(file, out, &args.common),
+        Some(Verb::Report { file, out, mold }) => run::report(file, out, mold.as_deref(), &args.common),
+        Some(Verb::New(asked)) => new::new(asked),
+        Some(Verb::Completions { shell }) => shell::completions(*shell),
+        Some(Verb::Man) => shell::man(),
         Some(Verb::Schema) => schema::schema(),
     }
 }

@@ -8,6 +8,8 @@ use super::flex;
 use super::hands;
 use super::load::{self, Loaded, Placed};
 use super::make;
+use super::molded;
+use super::paged;
 use super::questions;
 use super::repeats;
 use super::told::{News, Told, Trouble};
@@ -19,6 +21,7 @@ use crate::report::content::{Answer, Chapter, Format, Picture};
 use crate::report::draw::{Size, figures};
 use crate::report::file::write_whole;
 use crate::report::page::{PageInput, page};
+use crate::report::viewer::Answers;
 use crate::spec::{Cut, Layout, Subject};
 use crate::weave::{Origin, Weave};
 use serde::Serialize;
@@ -32,12 +35,19 @@ pub fn file(file: &Path, out: &Path, common: &Common) -> Result<Told, Trouble> {
     everything(load::spec(file, &common.puzzle)?, out, common)
 }
 
-/// The page alone, without making parts.
-pub fn report(file: &Path, out: &Path, common: &Common) -> Result<Told, Trouble> {
+/// The page alone, without making parts; with the mold of one part where that is asked for.
+pub fn report(file: &Path, out: &Path, mold: Option<&str>, common: &Common) -> Result<Told, Trouble> {
     let placed = load::spec(file, &common.puzzle)?.joined()?;
+    let part = mold.map(|id| questions::part(&placed.joined, id)).transpose()?;
     let asked = ask(&placed, common)?;
     let none = || Answer::not_run("`weavelock fab` makes the parts");
-    write_whole(out, page(&input(&placed, &asked, none(), none())).as_bytes())?;
+    let mut input = input(&placed, &asked, None, none(), none());
+    if let Some(part) = part {
+        let (exhibit, chapter) = molded::exhibit(&placed, part, molded::MoldRoute::Rigid)?;
+        input.exhibits.extend(exhibit);
+        input.molds = Answer::Given(chapter);
+    }
+    write_whole(out, page(&input).as_bytes())?;
     let headline = format!("The page is {}.", out.display());
     let chapter = Chapter { headline, ..Chapter::default() };
     let files = Files { verb: "report", files: vec![out.display().to_string()] };
@@ -172,7 +182,7 @@ fn everything(loaded: Loaded, out: &Path, common: &Common) -> Result<Told, Troub
     }
     let parts = Answer::Given(make::fab_chapter(&made, &folder, &[]));
     let ledger = Answer::Given(make::ledger_chapter(&made));
-    keep("report.html", page(&input(&placed, &asked, parts, ledger)).as_bytes())?;
+    keep("report.html", page(&input(&placed, &asked, as_made.as_ref(), parts, ledger)).as_bytes())?;
     Ok(summary(&placed, asked, as_made, fab, files, out))
 }
 
@@ -222,15 +232,36 @@ const LIMITS: [&str; 4] = [
     "The tiles are those of the sampled sites; the check says whether its verdict holds for the curved bisectors too.",
 ];
 
-fn input(placed: &Placed, asked: &Asked, parts: Answer<Chapter>, ledger: Answer<Chapter>) -> PageInput {
+fn answers(asked: &Asked, as_made: Option<&Told>) -> Answers {
+    Answers {
+        check: paged::json(Some(&asked.check)),
+        plan: paged::json(Some(&asked.plan)),
+        plan_as_made: paged::json(as_made),
+        flex: paged::json(asked.flex.as_ref().ok()),
+        chirality: paged::json(asked.chirality.as_ref().ok()),
+    }
+}
+
+fn input(
+    placed: &Placed,
+    asked: &Asked,
+    as_made: Option<&Told>,
+    parts: Answer<Chapter>,
+    ledger: Answer<Chapter>,
+) -> PageInput {
     let none = || Answer::not_run("an assembly of meshes has no weave");
     PageInput {
         title: placed.spec.name.clone(),
         lead: lead(placed),
         pictures: asked.pictures.clone(),
+        exhibits: paged::exhibits(placed, &answers(asked, as_made)),
         draft: asked.weave.as_ref().map_or_else(none, |t| with_drawing(placed, first_chapter(t))),
         verdict: first_chapter(&asked.check),
         plan: first_chapter(&asked.plan),
+        blocking: paged::blocking(placed),
+        molds: Answer::not_run(
+            "`weavelock fab` makes molds for parts that are cast; `weavelock report --mold PART` shows one",
+        ),
         flexible: chapter(&asked.flex),
         repeats: chapter(&asked.repeats),
         chirality: chapter(&asked.chirality),

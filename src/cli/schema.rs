@@ -7,7 +7,8 @@ use super::told::{News, Told, Trouble};
 use crate::chirality::answer::Hands;
 use crate::report::answer::fab::{FabAnswer, ProcessesAnswer};
 use crate::report::answer::{
-    BlockingAnswer, CheckAnswer, FlexAnswer, PlanAnswer, RepeatsAnswer, WeaveAnswer,
+    BlockingAnswer, CheckAnswer, FlexAnswer, PlanAnswer, PlayAnswer, ReleaseAnswer, RepeatsAnswer,
+    WeaveAnswer,
 };
 use crate::report::content::{Chapter, Tone};
 use crate::spec::shape::SpecFile;
@@ -20,6 +21,9 @@ pub fn schema() -> Result<Told, Trouble> {
         ("spec", schema_for!(SpecFile)),
         ("check", schema_for!(CheckAnswer)),
         ("plan", schema_for!(PlanAnswer)),
+        ("play", schema_for!(PlayAnswer)),
+        ("release", schema_for!(ReleaseAnswer)),
+        ("new", schema_for!(super::new::NewAnswer)),
         ("blocking", schema_for!(BlockingAnswer)),
         ("flex", schema_for!(FlexAnswer)),
         ("repeats", schema_for!(RepeatsAnswer)),

@@ -7,12 +7,14 @@ pub mod certificate;
 mod dyadic;
 mod field;
 mod flex;
+pub mod follow;
 mod interlock;
 mod mend;
 mod motion;
 mod number;
 mod order;
 pub mod plan;
+mod release;
 mod repeats;
 mod singular;
 mod stress;
@@ -56,6 +58,7 @@ pub fn answer(sealed: &Sealed) -> Result<Verified, Faults> {
         }
         Sealed::Flex(a) => flex::answer(a),
         Sealed::Repeats(a) => repeats::answer(a),
+        Sealed::Release(a) => release::answer(a),
     }
 }
 
