@@ -250,6 +250,26 @@ fn what_does_not_come_apart_is_told_with_what_was_exhausted() {
     assert!(plan["stuck"][0]["lock"].is_object());
 }
 
+/// Three cubes in a closed box of two by two by two: 8 x 7 x 6 positions, none of which lets one out.
+#[test]
+fn every_position_is_found_once() {
+    let draw = |inside: char| -> String {
+        let at = |k: usize| [k % 4, k / 4 % 4, k / 16];
+        (0..64).map(|k| if at(k).iter().all(|v| (1..3).contains(v)) { inside } else { '#' }).collect()
+    };
+    let file = format!(
+        "<puzzle><shapes><voxel x=\"4\" y=\"4\" z=\"4\" type=\"0\">{}</voxel><voxel x=\"1\" y=\"1\" z=\"1\" type=\"0\">#\
+         </voxel><voxel x=\"4\" y=\"4\" z=\"4\" type=\"0\">{}</voxel></shapes><problems><problem><shapes><shape id=\"0\"/>\
+         <shape id=\"1\" count=\"3\"/></shapes><result id=\"2\"/><solutions><solution><assembly>0 0 0 0 1 1 1 0 2 1 1 0 1 2 1 0\
+         </assembly></solution></solutions></problem></problems></puzzle>",
+        draw('_'),
+        draw('+')
+    );
+    let (code, plan) = planned(&file, "box");
+    assert_eq!((code, plan["positions"].as_u64()), (1, Some(8 * 7 * 6)));
+    assert_eq!(plan["kept"][0]["looked_at"], "all-positions");
+}
+
 #[test]
 fn a_changed_plan_is_refused_and_threads_change_no_byte() {
     let at = room("changed");
