@@ -21,6 +21,7 @@ mod package;
 mod pages;
 mod plan;
 mod processes;
+mod puzzle;
 mod random;
 mod release;
 mod repeats;
