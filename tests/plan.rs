@@ -1,17 +1,27 @@
 //! Plans: what must come apart does, what must not does not, and no plan that overlaps is accepted.
 
 mod build;
+mod made;
+mod turns;
 mod woven;
 
 use build::{assembly, cell, cuboid, prism, turned, v};
 use glam::DVec3;
 use weavelock::assembly::{Assembly, Mobility};
 use weavelock::contact::Patch;
-use weavelock::sequence::{Outcome, Plan, plan};
+use weavelock::sequence::{Motion, Outcome, Plan, Shift, Step, plan};
 use weavelock::solid::Cell;
 use weavelock::verify::plan::{Checked, Way, by_faces, by_program, check};
 
 type Made = (Assembly, Vec<Patch>);
+
+/// The straight move of a step.
+fn shift(step: &mut Step) -> &mut Shift {
+    match &mut step.motion {
+        Motion::Translation(shift) => shift,
+        other => panic!("not straight: {other:?}"),
+    }
+}
 
 fn planned(made: &Made) -> Plan<()> {
     let p = plan(&made.0, &made.1, |_| None::<()>).expect("sane parts");
@@ -73,9 +83,9 @@ fn dovetail(plug: bool) -> Made {
 #[test]
 fn dovetail_slides_one_way_only() {
     comes_apart(&dovetail(false), 1);
-    let p = planned(&dovetail(false));
+    let mut p = planned(&dovetail(false));
     assert_eq!(p.steps[0].clear, 0.0);
-    assert!(p.steps[0].direction[1].abs() > 1.0 - 1e-12, "{p:#?}");
+    assert!(shift(&mut p.steps[0]).direction[1].abs() > 1.0 - 1e-12, "{p:#?}");
 }
 
 #[test]
@@ -120,10 +130,10 @@ fn a_plan_through_a_thin_lip_is_refused() {
         ("gate", vec![cuboid([0., -0.01, 50.], [2., 0., 50.01])]),
     ]);
     let mut p = planned(&open);
-    p.steps[0].direction = [0., 0., 1.];
+    *shift(&mut p.steps[0]) = Shift::new(DVec3::Z, 60.0, 20.0);
     p.steps[0].parts = vec!["block".into()];
     p.steps[0].stays = vec!["gate".into()];
-    (p.steps[0].distance, p.steps[0].distance_mm, p.steps[0].clear) = (60.0, 1200.0, 0.0);
+    p.steps[0].clear = 0.0;
     assert!(matches!(check(&open.0, &p), Checked::Valid { .. }));
     match check(&lip.0, &p) {
         Checked::Invalid { step: 0, depth, t, .. } => {
@@ -272,13 +282,14 @@ fn a_plan_with_a_number_changed_is_refused() {
     for made in [dovetail(false), mortise(0.0), pair_in_a_well()] {
         let good = planned(&made);
         for k in 0..good.steps.len() {
-            let refused = |why: &str, change: &dyn Fn(&mut weavelock::sequence::Step)| {
+            let refused = |why: &str, change: &dyn Fn(&mut Step)| {
                 let mut bad = good.clone();
                 change(&mut bad.steps[k]);
                 assert!(matches!(check(&made.0, &bad), Checked::Invalid { .. }), "{why}: {bad:#?}");
             };
             let turn = |by: f64| {
-                move |s: &mut weavelock::sequence::Step| {
+                move |s: &mut Step| {
+                    let s = shift(s);
                     let d = DVec3::from_array(s.direction);
                     s.direction = (d + d.any_orthonormal_vector() * by).normalize().to_array();
                 }
@@ -286,16 +297,19 @@ fn a_plan_with_a_number_changed_is_refused() {
             refused("turned by a hundredth", &turn(0.01));
             refused("turned the other way", &turn(-0.01));
             if made.0.parts.iter().any(|p| p.id == "peg") {
-                refused("reversed", &|s| s.direction = s.direction.map(|x| -x));
+                refused("reversed", &|s| shift(s).direction = shift(s).direction.map(|x| -x));
             }
-            refused("not unit", &|s| s.direction = s.direction.map(|x| x * 1.001));
-            refused("short", &|s| (s.distance, s.distance_mm) = (s.distance * 0.5, s.distance_mm * 0.5));
-            refused("other mm", &|s| s.distance_mm *= 1.001);
+            refused("not unit", &|s| shift(s).direction = shift(s).direction.map(|x| x * 1.001));
+            refused("short", &|s| {
+                let s = shift(s);
+                (s.distance, s.distance_mm) = (s.distance * 0.5, s.distance_mm * 0.5);
+            });
+            refused("other mm", &|s| shift(s).distance_mm *= 1.001);
             refused("clear that is not kept", &|s| s.clear = 0.001);
             refused("unknown part", &|s| s.parts[0] = "nobody".into());
             refused("one part twice", &|s| s.parts.push(s.parts[0].clone()));
             refused("one part less", &|s| drop(s.stays.pop()));
-            refused("no number", &|s| s.distance = f64::NAN);
+            refused("no number", &|s| shift(s).distance = f64::NAN);
         }
         let mut bad = good.clone();
         bad.steps.pop();

@@ -19,7 +19,7 @@ const FLOW: [&[&str]; 17] = [
     &["blocking", "locking"],
     &["sequence"],
     &["made"],
-    &["repeats", "flex", "chirality", "fabricate", "sampling", "interlock"],
+    &["repeats", "flex", "chirality", "fabricate", "sampling", "interlock", "play", "release"],
     &["report"],
     &["verify", "atlas"],
     &["cli"],

@@ -34,6 +34,29 @@ pub struct Common {
     /// Threads to use (default: one for each core); answers do not depend on it
     #[arg(long, global = true, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub threads: Option<u16>,
+    #[command(flatten)]
+    pub puzzle: PuzzleArgs,
+}
+
+/// What is asked about in a puzzle file of BurrTools, which every verb takes that takes a file.
+#[derive(ClapArgs, Debug, Clone, Default)]
+pub struct PuzzleArgs {
+    /// Of a puzzle file: the problem asked about, from 1 (default: the first with a solution): `--problem 2`
+    #[arg(long, global = true, value_name = "N", help_heading = "Puzzle files", value_parser = counted)]
+    pub problem: Option<usize>,
+    /// Of a puzzle file: the stated solution asked about, from 1 (default: the first): `--solution 3`
+    #[arg(long, global = true, value_name = "N", help_heading = "Puzzle files", value_parser = counted)]
+    pub solution: Option<usize>,
+    /// Of a puzzle file: edge of a voxel (default: 1 mm): `--unit "10 mm"`
+    #[arg(long, global = true, value_name = "LENGTH", help_heading = "Puzzle files", value_parser = edge)]
+    pub unit: Option<f64>,
+}
+
+impl PuzzleArgs {
+    /// Whether anything was said.
+    pub fn some(&self) -> Option<&PuzzleArgs> {
+        (self.problem.is_some() || self.solution.is_some() || self.unit.is_some()).then_some(self)
+    }
 }
 
 #[derive(Subcommand, Debug)]
@@ -64,6 +87,10 @@ pub enum Verb {
         #[arg(long, value_name = "LENGTH", value_parser = length)]
         clearance: Option<f64>,
     },
+    /// How far do parts made with air shift and tilt? `weavelock play plain.toml --clearance "0.2 mm"`
+    Play(super::play::Asked),
+    /// How much clearance releases the lock? `weavelock release plain.toml --process fdm-pla`
+    Release(super::release::Asked),
     /// Which part stops which: along a direction, or over all of them: `weavelock blocking roof.toml --sphere roof.svg`
     Blocking(super::blocking::Blocking),
     /// Does it need flexible parts? The fewest, all such sets, and the bound's proof: `weavelock flex plain.toml`
@@ -111,7 +138,13 @@ pub enum Verb {
         #[arg(long, value_name = "PART")]
         mold: Option<String>,
     },
-    /// JSON Schema of the files in and of every answer
+    /// A commented spec from four questions, or none: `weavelock new mine.toml --defaults`
+    New(super::new::Asked),
+    /// Completions for a shell: `weavelock completions bash`
+    Completions { shell: clap_complete::Shell },
+    /// The manual page, in roff: `weavelock man`
+    Man,
+    /// JSON Schema of the files in and of every answer: `weavelock schema`
     Schema,
 }
 
@@ -148,6 +181,23 @@ pub struct Fab {
     /// Also check with OpenSCAD, PrusaSlicer (information and slicing) and ADMesh, where installed
     #[arg(long)]
     pub check: bool,
+}
+
+/// A number counted from 1.
+fn counted(text: &str) -> Result<usize, String> {
+    text.parse().ok().filter(|&n| n > 0).ok_or_else(|| "numbers are counted from 1".into())
+}
+
+/// Largest edge of a voxel, in mm: that of a pitch.
+const MAX_EDGE_MM: f64 = 10_000.0;
+
+fn edge(text: &str) -> Result<f64, String> {
+    let mm = length(text)?;
+    if mm > 0.0 && mm <= MAX_EDGE_MM {
+        Ok(mm)
+    } else {
+        Err("a voxel is larger than 0, and at most 10 m".into())
+    }
 }
 
 /// A length with its unit, in mm.

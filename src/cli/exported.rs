@@ -1,6 +1,6 @@
 //! Takes an assembly in place; writes it for other programs: meshes as they touch, the plan as an animation, tables.
 //!
-//! Not promised: STEP; no crate was found that writes valid files of it.
+//! Not promised: STEP, which is not written.
 
 use super::draw::ends_in;
 use super::load::Placed;
@@ -15,6 +15,7 @@ use crate::report::moves::Moves;
 use crate::spec::Subject;
 use crate::weave;
 use clap::{Args, ValueEnum};
+use schemars::JsonSchema;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 
@@ -78,10 +79,12 @@ fn ending(format: Format) -> &'static str {
     ENDINGS.iter().find(|e| e.0 == format).map_or("", |e| e.1)
 }
 
-#[derive(Serialize)]
-struct ExportAnswer {
-    verb: &'static str,
-    unit: &'static str,
+/// Answer of `export`.
+#[derive(Serialize, JsonSchema)]
+pub struct ExportAnswer {
+    verb: String,
+    /// Of the lengths in the files.
+    unit: String,
     files: Vec<String>,
 }
 
@@ -114,7 +117,7 @@ pub fn export(placed: &Placed, asked: &Export) -> Result<Told, Trouble> {
         n => format!("{n} files in {place}, in {unit}, in place."),
     };
     let chapter = Chapter { tone: Tone::Good, headline, words: names.clone(), ..Chapter::default() };
-    let answer = ExportAnswer { verb: "export", unit, files: names };
+    let answer = ExportAnswer { verb: "export".into(), unit: unit.into(), files: names };
     Ok(Told::new(News::Good, &answer, &placed.joined.assembly.name, "Files", chapter))
 }
 

@@ -2,6 +2,7 @@
 //!
 //! Not promised: anything beyond what `flex` promises.
 
+use super::args::PuzzleArgs;
 use super::args::length;
 use super::load::{self, Placed};
 use super::questions::argument;
@@ -60,8 +61,8 @@ fn duration(text: &str) -> Result<Duration, String> {
     Duration::try_from_secs_f64(seconds).map_err(|_| hint())
 }
 
-pub fn flex(asked: &Asked) -> Result<Told, Trouble> {
-    let placed = load::spec(&asked.file)?.joined()?;
+pub fn flex(asked: &Asked, puzzle: &PuzzleArgs) -> Result<Told, Trouble> {
+    let placed = load::spec(&asked.file, puzzle)?.joined()?;
     let wanted = if asked.minimal { Wanted::Minimal } else { Wanted::Smallest };
     let clearance_mm = asked.clearance.unwrap_or(0.0);
     let settings = Settings { clearance_mm, wanted, work: asked.work, time: asked.time };

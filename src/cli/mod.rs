@@ -14,15 +14,20 @@ mod interlock;
 mod load;
 mod make;
 mod molded;
+pub mod new;
 mod package;
 mod paged;
 mod pictured;
 mod planned;
+mod play;
+mod puzzle;
 mod questions;
+mod release;
 mod repeated;
 pub mod repeats;
 mod run;
 mod schema;
+mod shell;
 mod told;
 mod words;
 
@@ -52,27 +57,35 @@ pub fn main(args: Args) -> ExitCode {
 }
 
 fn dispatch(args: &Args) -> Result<Told, Trouble> {
+    let puzzle = &args.common.puzzle;
     match &args.verb {
         None => run::example(&args.common),
         Some(Verb::Run { file, out }) => run::file(file, out, &args.common),
         Some(Verb::Check { file, fix, refine }) => {
-            check::check(&load::spec(file)?.joined()?, fix.as_deref(), *refine)
+            check::check(&load::spec(file, puzzle)?.joined()?, fix.as_deref(), *refine)
         }
         Some(Verb::Plan { file, of, clearance }) => {
-            questions::plan(&load::spec(file)?.joined()?, of, clearance.unwrap_or(0.0))
+            questions::plan(&load::spec(file, puzzle)?.joined()?, of, clearance.unwrap_or(0.0))
         }
-        Some(Verb::Blocking(asked)) => blocking::blocking(&load::spec(&asked.file)?.joined()?, asked),
-        Some(Verb::Flex(asked)) => flex::flex(asked),
+        Some(Verb::Play(asked)) => play::play(asked, puzzle),
+        Some(Verb::Release(asked)) => release::release(asked, puzzle),
+        Some(Verb::Blocking(asked)) => blocking::blocking(&load::spec(&asked.file, puzzle)?.joined()?, asked),
+        Some(Verb::Flex(asked)) => flex::flex(asked, puzzle),
         Some(Verb::Repeats(asked)) => repeats::repeats(asked),
-        Some(Verb::Chirality { subject, export }) => hands::chirality(subject, export.as_deref()),
+        Some(Verb::Chirality { subject, export }) => hands::chirality(subject, export.as_deref(), puzzle),
         Some(Verb::Weave { subject, svg, wif }) => questions::weave(subject, svg.as_deref(), wif.as_deref()),
-        Some(Verb::Fab(asked)) => package::fab(&load::spec(&asked.file)?.joined()?, asked, &args.common),
+        Some(Verb::Fab(asked)) => {
+            package::fab(&load::spec(&asked.file, puzzle)?.joined()?, asked, &args.common)
+        }
         Some(Verb::Processes { name }) => package::processes(name.as_deref()),
-        Some(Verb::Export(asked)) => exported::export(&load::spec(&asked.file)?.joined()?, asked),
-        Some(Verb::Draw(asked)) => draw::draw(&load::spec(&asked.file)?.joined()?, asked),
+        Some(Verb::Export(asked)) => exported::export(&load::spec(&asked.file, puzzle)?.joined()?, asked),
+        Some(Verb::Draw(asked)) => draw::draw(&load::spec(&asked.file, puzzle)?.joined()?, asked),
         Some(Verb::Verify { answer }) => questions::verify(answer),
         Some(Verb::Atlas(asked)) => atlas::atlas(asked, &args.common),
         Some(Verb::Report { file, out, mold }) => run::report(file, out, mold.as_deref(), &args.common),
+        Some(Verb::New(asked)) => new::new(asked),
+        Some(Verb::Completions { shell }) => shell::completions(*shell),
+        Some(Verb::Man) => shell::man(),
         Some(Verb::Schema) => schema::schema(),
     }
 }

@@ -3,6 +3,7 @@
 //! Not promised: anything beyond what the stage that answers promises.
 
 use super::load::{self, Placed};
+use super::puzzle;
 use super::told::{News, Told, Trouble};
 use super::words;
 use crate::assembly::PartIx;
@@ -37,13 +38,15 @@ pub fn argument(what: String, hint: String) -> Fault {
 pub fn planned(placed: &Placed, of: &[PartIx], clearance_mm: f64) -> PlanAnswer {
     let joined = &placed.joined;
     let (asm, patches) = (&joined.assembly, &joined.patches);
-    let found = if clearance_mm > 0.0 {
-        with_clearance(asm, patches, clearance_mm / asm.mm_per_unit)
-            .map_err(|e| e.to_string())
-            .and_then(|made| sequence::plan_of(&made, of, &[], |_| None).map_err(|e| e.to_string()))
-    } else {
-        sequence::plan_of(asm, of, patches, |set| locked(joined, set)).map_err(|e| e.to_string())
-    };
+    let found = puzzle::plan(placed, of, clearance_mm, || {
+        if clearance_mm > 0.0 {
+            with_clearance(asm, patches, clearance_mm / asm.mm_per_unit)
+                .map_err(|e| e.to_string())
+                .and_then(|made| sequence::plan_of(&made, of, &[], |_| None).map_err(|e| e.to_string()))
+        } else {
+            sequence::plan_of(asm, of, patches, |set| locked(joined, set)).map_err(|e| e.to_string())
+        }
+    });
     let (plan, why) = found.map_or_else(|why| (nothing(), Some(why)), |plan| (plan, None));
     let remarks = why.map(|why| format!("no plan was searched: {why}"));
     answer::plan(joined, plan, of, clearance_mm, remarks, placed.source.clone())
@@ -58,6 +61,7 @@ fn nothing() -> Plan<Certificate> {
         stuck: Vec::new(),
         searched: Searched::default(),
         touch: 0.0,
+        counted: None,
     }
 }
 

@@ -32,12 +32,12 @@ pub fn example(common: &Common) -> Result<Told, Trouble> {
 }
 
 pub fn file(file: &Path, out: &Path, common: &Common) -> Result<Told, Trouble> {
-    everything(load::spec(file)?, out, common)
+    everything(load::spec(file, &common.puzzle)?, out, common)
 }
 
 /// The page alone, without making parts; with the mold of one part where that is asked for.
 pub fn report(file: &Path, out: &Path, mold: Option<&str>, common: &Common) -> Result<Told, Trouble> {
-    let placed = load::spec(file)?.joined()?;
+    let placed = load::spec(file, &common.puzzle)?.joined()?;
     let part = mold.map(|id| questions::part(&placed.joined, id)).transpose()?;
     let asked = ask(&placed, common)?;
     let none = || Answer::not_run("`weavelock fab` makes the parts");
@@ -289,6 +289,7 @@ fn lead(placed: &Placed) -> String {
     let asm = &placed.joined.assembly;
     let what = match &placed.spec.subject {
         Subject::Woven(woven) => format!("woven of {}", name(&woven.weave)),
+        Subject::Meshes(meshes) if meshes.puzzle.is_some() => "of a puzzle".into(),
         Subject::Meshes(_) => "read from meshes".into(),
     };
     format!(

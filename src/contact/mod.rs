@@ -78,7 +78,8 @@ pub fn join(spec: &Spec) -> Result<Joined, Faults> {
 fn join_meshes(spec: &Spec, meshes: &MeshSpec) -> Result<Joined, Faults> {
     let read::Read { assembly, resolution, mut remarks } = read::assembly(spec, meshes)?;
     let tolerance = meshes.tolerance_mm / meshes.mm_per_unit;
-    let turns = meshes.parts.iter().map(|p| p.turn);
+    // A puzzle lists no parts from files: its pieces are turned exactly.
+    let turns = meshes.parts.iter().map(|p| p.turn).chain(std::iter::repeat(0.0));
     let accuracy: Vec<_> =
         resolution.into_iter().zip(turns).map(|(corner, turn)| mesh::Accuracy { corner, turn }).collect();
     let found = mesh::mesh_patches(&assembly, &accuracy, tolerance).map_err(|overlaps| {

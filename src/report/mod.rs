@@ -13,6 +13,7 @@ mod html;
 pub mod instructions;
 pub mod moves;
 pub mod page;
+pub mod steps;
 pub mod text;
 pub mod viewer;
 pub mod words;

@@ -3,8 +3,10 @@
 //! Not promised: a word more than the verdict carries. First order and zero clearance are said wherever they matter.
 
 use super::content::{Chapter, Column, Table, Tone};
+use super::steps;
 use crate::assembly::{Assembly, PartIx};
 use crate::locking::{Check, Freedom, Motion, Stress, Twist, Verdict};
+use crate::sequence::lattice::answer::{Counted, Word as Fewest};
 use crate::sequence::{Outcome, Plan, Straight, Stuck};
 use glam::DVec3;
 
@@ -95,12 +97,33 @@ fn free(assembly: &Assembly, motion: &Motion) -> Chapter {
 pub fn plan<C>(assembly: &Assembly, plan: &Plan<C>) -> Chapter {
     let searched = [plan.searched.sets, plan.searched.directions].map(thousands);
     let touch = format!("overlap up to {} mm", scientific(plan.touch * assembly.mm_per_unit));
-    let facts = vec![
+    let mut facts: Vec<(String, String)> = plan.counted.iter().flat_map(counted).collect();
+    facts.extend([
         fact("searched", format!("{} sets, {} directions", searched[0], searched[1])),
         fact("counts as touching", touch),
-    ];
-    let tables = if plan.steps.is_empty() { vec![] } else { vec![steps(assembly, plan)] };
+    ]);
+    let tables = if plan.steps.is_empty() { vec![] } else { vec![steps::table(assembly, plan)] };
     Chapter { facts, tables, ..outcome(plan) }
+}
+
+/// How many moves along the axes, as puzzlers count them.
+fn counted(c: &Counted) -> Vec<(String, String)> {
+    let fewest = match c.fewest {
+        Fewest::Proven => "the fewest for each set from where it stands: proven by search",
+        Fewest::NotProven => "not proven to be the fewest",
+    };
+    let level = c.level.iter().map(|level| fact("level", format!("{level} ({fewest})")));
+    let kept = c.kept.iter().map(|k| {
+        let looked = match k.within_moves {
+            None => {
+                "every position that moves along the axes reach was looked at, none lets parts leave".into()
+            }
+            Some(moves) => format!("the search gave up after looking at all positions within {moves} moves"),
+        };
+        fact("stay together", format!("{}: {looked}", k.parts.join(", ")))
+    });
+    let positions = fact("positions", thousands(c.positions));
+    level.chain([fact("moves", c.moves.to_string())]).chain(kept).chain([positions]).collect()
 }
 
 /// The headline of a plan, and why there is none.
@@ -108,9 +131,8 @@ fn outcome<C>(plan: &Plan<C>) -> Chapter {
     let stuck = sets(plan, |_| true);
     let (tone, headline, why) = match plan.outcome {
         Outcome::Assembled => {
-            let moves =
-                if plan.steps.len() == 1 { "one move".into() } else { format!("{} moves", plan.steps.len()) };
-            (Tone::Good, format!("It goes together: {moves}, straight and without force."), None)
+            let moves = if plan.steps.is_empty() { "nothing to move".into() } else { steps::count(plan) };
+            (Tone::Good, format!("It goes together without force: {moves}."), None)
         }
         Outcome::NeedsFlexible => (
             Tone::Bad,
@@ -141,23 +163,6 @@ fn outcome<C>(plan: &Plan<C>) -> Chapter {
 /// The sets that stayed together, of those that `keep` picks.
 fn sets<C>(plan: &Plan<C>, keep: impl Fn(&Stuck<C>) -> bool) -> String {
     plan.stuck.iter().filter(|s| keep(s)).map(|s| s.parts.join(", ")).collect::<Vec<_>>().join("; and ")
-}
-
-fn steps<C>(assembly: &Assembly, plan: &Plan<C>) -> Table {
-    let rows = plan.steps.iter().rev().zip(1..).map(|(s, k)| {
-        let toward = s.direction.map(|c| decimal(-c));
-        let lengths = [s.distance_mm, s.clear * assembly.mm_per_unit].map(|l| format!("{l:.2}"));
-        let ends = [vec![k.to_string(), s.parts.join(", ")], vec![s.stays.join(", ")]];
-        [&ends[0], toward.as_slice(), &lengths, &ends[1]].concat()
-    });
-    let numbers = ["along x", "y", "z", "length, mm", "kept, mm"].map(Column::numbers);
-    let head = [Column::numbers("step"), Column::words("parts")].into_iter().chain(numbers);
-    Table {
-        caption: "Moves in the order of assembly; kept: the least distance on the way, 0 where parts slide"
-            .into(),
-        head: head.chain([Column::words("onto")]).collect(),
-        rows: rows.collect(),
-    }
 }
 
 fn still(assembly: &Assembly, check: &Check) -> String {
@@ -194,7 +199,7 @@ pub(in crate::report) fn movers(motion: &Motion) -> Vec<(PartIx, Twist)> {
     motion.twists.iter().filter(|(_, t)| shown(t.translation) || shown(t.rotation)).copied().collect()
 }
 
-fn decimal(x: f64) -> String {
+pub(super) fn decimal(x: f64) -> String {
     let text = format!("{x:.PLACES$}");
     // A minus zero would be read as a direction.
     if x.abs() < LEAST_PRINTED { text.trim_start_matches('-').into() } else { text }

@@ -3,6 +3,8 @@
 use super::Move;
 use super::field::{Field, Set};
 use super::gap::least_gap;
+use super::lattice::answer::Counted;
+use super::motion::{Ends, Motion, Shift};
 use crate::assembly::PartIx;
 use crate::blocking::shadow::View;
 use schemars::JsonSchema;
@@ -27,25 +29,17 @@ pub enum Order {
     Disassembly,
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub enum Kind {
-    Translation,
-}
-
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Step {
-    /// Ids of the parts that move together.
+    /// Ids of all parts that move.
     pub parts: Vec<String>,
-    pub kind: Kind,
-    /// Unit vector in world coordinates.
-    pub direction: [f64; 3],
-    /// Model units; the moved parts end clear of the rest along the direction.
-    pub distance: f64,
-    pub distance_mm: f64,
-    /// Least distance, in model units, that the moved parts keep from the rest on their way: 0 where they start in
-    /// contact or slide.
+    #[serde(flatten)]
+    pub motion: Motion,
+    /// Least distance, in model units, that what moves keeps from the rest (and from what moves another way) on its
+    /// way: 0 where they start in contact or slide.
     pub clear: f64,
+    #[serde(default)]
+    pub ends: Ends,
     /// Ids of the parts that stand still.
     pub stays: Vec<String>,
 }
@@ -85,6 +79,9 @@ pub struct Plan<C> {
     pub searched: Searched,
     /// Depth, in model units, up to which an overlap counted as touching.
     pub touch: f64,
+    /// Moves along the axes of a lattice, where the plan was made on one.
+    #[serde(flatten, default, skip_serializing_if = "Option::is_none")]
+    pub counted: Option<Counted>,
 }
 
 /// Share of the moved parts' extent along the direction that a move goes beyond being clear: enough to be seen and to
@@ -95,11 +92,9 @@ pub(super) fn step(field: &Field, m: &Move) -> Step {
     let distance = distance(field, m);
     Step {
         parts: ids(field, &m.parts),
-        kind: Kind::Translation,
-        direction: m.along.to_array(),
-        distance,
-        distance_mm: distance * field.asm.mm_per_unit,
+        motion: Motion::Translation(Shift::new(m.along, distance, field.asm.mm_per_unit)),
         clear: least_gap(field, &m.parts, &m.stays, m.along * distance),
+        ends: Ends::Apart,
         stays: ids(field, &m.stays),
     }
 }

@@ -13,10 +13,13 @@ pub mod clearance;
 pub mod field;
 mod gap;
 pub mod group;
+pub mod lattice;
 pub mod leave;
+mod motion;
 mod singles;
 
-pub use answer::{Kind, Order, Outcome, Plan, Searched, Step, Straight, Stuck};
+pub use answer::{Order, Outcome, Plan, Searched, Step, Straight, Stuck};
+pub use motion::{Ends, Motion, Mover, Rigid, Screw, Shift};
 
 use crate::assembly::{Assembly, PartIx};
 use crate::contact::Patch;
@@ -156,6 +159,14 @@ impl<'f, 'a> Work<'f, 'a> {
             _ => Outcome::NotFound,
         };
         let touch = field.touch.depth();
-        Plan { outcome, order: Order::Disassembly, steps, stuck, searched: self.searched, touch }
+        Plan {
+            outcome,
+            order: Order::Disassembly,
+            steps,
+            stuck,
+            searched: self.searched,
+            touch,
+            counted: None,
+        }
     }
 }

@@ -7,12 +7,14 @@ pub mod certificate;
 mod dyadic;
 mod field;
 mod flex;
+pub mod follow;
 mod interlock;
 mod mend;
 mod motion;
 mod number;
 mod order;
 pub mod plan;
+mod release;
 mod repeats;
 mod singular;
 mod stress;
@@ -56,6 +58,7 @@ pub fn answer(sealed: &Sealed) -> Result<Verified, Faults> {
         }
         Sealed::Flex(a) => flex::answer(a),
         Sealed::Repeats(a) => repeats::answer(a),
+        Sealed::Release(a) => release::answer(a),
     }
 }
 
@@ -145,6 +148,9 @@ fn plan(joined: &Joined, a: &PlanAnswer) -> Result<Proofs, String> {
             return Err(format!("step {}: {}: {why}", step + 1, parts.join(", ")));
         }
         plan::Checked::Undecided { why } => return Err(format!("could not be decided: {why}")),
+    }
+    if let Some(claimed) = &a.plan.counted {
+        plan::counted(&a.plan.steps, &a.of, claimed)?;
     }
     for stuck in &a.plan.stuck {
         if let Some(lock) = &stuck.lock {

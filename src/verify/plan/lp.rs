@@ -27,8 +27,9 @@ const RATE_ROUND_OFF: f64 = 1e-12;
 pub struct Bound {
     pub bound: f64,
     pub at: [f64; SIZE],
-    /// Bit k: row k carries weight in the bound.
+    /// The rows that carry the bound, and how much of it each.
     pub rests_on: [usize; SIZE],
+    pub weights: [f64; SIZE],
 }
 
 /// Starts at the vertex where `active` rows hold with equality. `reach` bounds every variable's absolute value.
@@ -40,7 +41,12 @@ pub fn maximize_last(rows: &[Row], mut active: [usize; SIZE], reach: f64) -> Opt
         let weights = inverse.map(|r| r[..].to_owned());
         let weights: [f64; SIZE] = std::array::from_fn(|k| weights[SIZE - 1][k]);
         let Some(out) = leaving(&weights, &active, round >= FREE_ROUNDS) else {
-            return Some(Bound { bound: weak_duality(rows, &active, &weights, reach), at, rests_on: active });
+            return Some(Bound {
+                bound: weak_duality(rows, &active, &weights, reach),
+                at,
+                rests_on: active,
+                weights,
+            });
         };
         let way: [f64; SIZE] = std::array::from_fn(|k| -inverse[k][out]);
         active[out] = entering(rows, &active, &at, &way)?;

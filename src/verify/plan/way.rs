@@ -37,6 +37,26 @@ pub fn by_faces(moving: &Cell, still: &Cell, way: Way) -> f64 {
 
 /// The exact program. None when it could not be solved, which is no verdict.
 pub fn by_program(moving: &Cell, still: &Cell, way: Way) -> Option<Ball> {
+    solved(moving, still, way).map(|(ball, _)| ball)
+}
+
+/// Two cells where they stand: the largest ball in both, and a plane between them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Parting {
+    /// Upper bound, model units.
+    pub radius: f64,
+    /// Unit normal, from `b` to `a`: across it the cells overlap by little where the ball is small.
+    pub normal: DVec3,
+}
+
+/// None where no program was solved.
+pub fn parting(a: &Cell, b: &Cell) -> Option<Parting> {
+    let (ball, normal) = solved(a, b, Way { direction: DVec3::Z, length: 0.0 })?;
+    Some(Parting { radius: ball.radius, normal: normal.try_normalize()? })
+}
+
+/// The ball, and what the faces of `still` push with in the bound: outward, toward `moving`.
+fn solved(moving: &Cell, still: &Cell, way: Way) -> Option<(Ball, DVec3)> {
     let corners = || moving.vertices.iter().chain(&still.vertices);
     let lo =
         corners().fold(DVec3::INFINITY, |m, v| m.min(*v)).min(DVec3::ZERO + corner_of(way, moving, false));
@@ -46,16 +66,23 @@ pub fn by_program(moving: &Cell, still: &Cell, way: Way) -> Option<Ball> {
     let room = 2.0 * (hi - lo).length() + way.length;
     let rows = rows(moving, still, way, centre, room);
     let start = [rows.len() - 5, rows.len() - 4, rows.len() - 3, rows.len() - 2, rows.len() - 1];
-    let Bound { bound, at, rests_on } = maximize_last(&rows, start, 8.0 * room)?;
+    let Bound { bound, at, rests_on, weights } = maximize_last(&rows, start, 8.0 * room)?;
+    let of_still = moving.planes.len()..moving.planes.len() + still.planes.len();
+    let push = |(k, w): (&usize, f64)| {
+        if of_still.contains(k) { still.planes[k - of_still.start].0 * w } else { DVec3::ZERO }
+    };
+    let normal = rests_on.iter().zip(weights).map(push).sum();
     // Resting on the artificial walls, a negative radius would be too low.
     let walled = rests_on.iter().any(|&k| k >= rows.len() - 5 && k != rows.len() - 2);
-    Some(Ball { radius: if walled { bound.max(0.0) } else { bound }, at: at[3] })
+    Some((Ball { radius: if walled { bound.max(0.0) } else { bound }, at: at[3] }, normal))
 }
 
 /// How near two cells come on the way.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Gap {
     pub distance: f64,
+    /// From the still cell to the moving one.
+    pub apart: DVec3,
     /// Where along the way, model units.
     pub at: f64,
 }
@@ -84,7 +111,11 @@ pub fn gap(moving: &Cell, still: &Cell, way: Way) -> Option<Gap> {
     solver.solve();
     let x = &solver.solution.x;
     let apart: DVec3 = to_gap.iter().zip(x).map(|(&g, &x)| g * x).sum();
-    (solver.solution.status == SolverStatus::Solved).then_some(Gap { distance: apart.length(), at: x[6] })
+    (solver.solution.status == SolverStatus::Solved).then_some(Gap {
+        distance: apart.length(),
+        apart,
+        at: x[6],
+    })
 }
 
 fn corner_of(way: Way, moving: &Cell, high: bool) -> DVec3 {
