@@ -56,6 +56,7 @@ fn step(made: &Assembly, twists: &[(PartIx, Twist)], by: f64) -> Plan<()> {
         stuck: vec![Stuck { parts, straight_moves: Straight::Unknown, lock: None }],
         searched: Searched::default(),
         touch: 0.0,
+        counted: None,
     }
 }
 
