@@ -4,7 +4,7 @@ use crate::support::{joined, ran, window};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 use weavelock::assembly::{Assembly, PartIx};
-use weavelock::report::export::{self, glb, ply, tables};
+use weavelock::report::export::{self, glb, ply, step, tables};
 use weavelock::report::moves;
 
 /// A free swatch with a plan, small enough for many pictures.
@@ -58,7 +58,7 @@ fn every_picture_is_drawn_in_both_kinds_the_same_with_any_threads() {
         loop {
             match reader.read_event().expect("well-formed") {
                 quick_xml::events::Event::Eof => break,
-                quick_xml::events::Event::Empty(e) if e.name().as_ref() == b"path" => paths += 1,
+                quick_xml::events::Event::Empty(e) if e.name().as_ref() == "path" => paths += 1,
                 _ => {}
             }
         }
@@ -235,6 +235,32 @@ fn meshes_come_back_as_they_were_written() {
     assert!(ply::read(&bytes[..bytes.len() - 1]).is_err());
 }
 
+/// Every entity named is there, each edge is run once each way, and the corners are the parts' own.
+#[test]
+fn a_step_file_has_a_closed_solid_for_each_part() {
+    let mut asm = swatch();
+    let all: Vec<PartIx> = asm.ids().collect();
+    let text = String::from_utf8(step::step(&asm, &all).expect("closed")).expect("text");
+    let entities: std::collections::BTreeMap<&str, &str> =
+        text.lines().filter(|l| l.starts_with('#')).filter_map(|l| l.split_once('=')).collect();
+    for body in entities.values() {
+        let named =
+            body.split('#').skip(1).map(|r| r.split(|c: char| !c.is_ascii_digit()).next().expect("digits"));
+        named.for_each(|n| assert!(entities.contains_key(format!("#{n}").as_str()), "#{n} in {body}"));
+    }
+    let of = |kind: &str| entities.values().filter(|b| b.starts_with(kind)).copied().collect::<Vec<_>>();
+    let facets: usize = asm.parts.iter().map(|p| asm.solids[p.solid].facets.len()).sum();
+    let vertices: usize = asm.parts.iter().map(|p| asm.solids[p.solid].vertices.len()).sum();
+    assert_eq!(of("MANIFOLD_SOLID_BREP('weft-").len() + of("MANIFOLD_SOLID_BREP('warp-").len(), 4);
+    assert_eq!((of("ADVANCED_FACE").len(), of("VERTEX_POINT").len()), (facets, vertices));
+    let runs = of("ORIENTED_EDGE");
+    assert_eq!(runs.len(), 2 * of("EDGE_CURVE").len());
+    assert_eq!(runs.iter().filter(|r| r.ends_with(".T.);")).count() * 2, runs.len());
+    asm.solids[0].facets.pop();
+    let refused = step::step(&asm, &all).expect_err("open");
+    assert!(asm.parts.iter().any(|p| p.id == refused.part));
+}
+
 #[test]
 fn tables_have_a_row_for_each_part_contact_and_motion() {
     let joined = joined(&window([1, 1, 1], 4, 2, 2));
@@ -252,7 +278,7 @@ fn tables_have_a_row_for_each_part_contact_and_motion() {
 #[test]
 fn export_writes_what_the_ending_says() {
     let at = room("export");
-    for name in ["a.glb", "a.3mf", "a.ply", "a.obj", "a.stl", "a.wif"] {
+    for name in ["a.glb", "a.3mf", "a.ply", "a.obj", "a.stl", "a.step", "a.wif"] {
         let (code, said) = told(&at, "export", &["--still", "--out", &file(&at, name)]);
         assert_eq!(code, 0, "{name}: {said}");
         assert!(at.join(name).is_file(), "{name}");
