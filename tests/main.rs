@@ -6,6 +6,7 @@ mod blocking;
 mod browser;
 mod certificates;
 mod cli;
+mod drawn;
 mod exact;
 mod examples;
 mod fab;
