@@ -15,6 +15,7 @@ mod hands;
 mod interlock;
 mod known;
 mod laws;
+mod margins;
 mod mesh;
 mod molds;
 mod package;
