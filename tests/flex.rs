@@ -209,3 +209,27 @@ fn words_for_a_maker_and_bad_flags() {
     assert_eq!(out.status.code(), Some(2), "{said}");
     assert!(said.contains("nothing is left"), "{said}");
 }
+
+/// Other people's roof: locked with its boundary held, and one flexible part is enough.
+#[test]
+#[ignore = "slow: 62 parts, some ten seconds"]
+fn the_roof_needs_one() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/cases/topolite/roof");
+    let Ok(all) = std::fs::read_dir(&folder) else {
+        println!("skipped: no {}", folder.display());
+        return;
+    };
+    let mut files: Vec<PathBuf> = all.map(|e| e.expect("an entry").path()).collect();
+    files.retain(|f| f.extension().is_some_and(|e| e == "obj"));
+    files.sort();
+    let mut text =
+        "name = \"roof\"\n[contact]\ntolerance = \"0.001 mm\"\n[size]\nunit = \"mm\"\n".to_string();
+    for f in files {
+        let held = f.file_stem().is_some_and(|s| s == "Boundary");
+        text += &format!("[[part]]\nmesh = {:?}\nheld = {held}\n", f.display().to_string());
+    }
+    let answer = json(&written("roof", &text), &["--work", "1000000"]);
+    assert_eq!(answer["minimum"], 1, "{} to {}", answer["lower_bound"], answer["upper_bound"]);
+    let found = verified(&answer);
+    assert!(found.valid, "{}", found.why);
+}

@@ -16,6 +16,7 @@ mod hands;
 mod interlock;
 mod known;
 mod laws;
+mod margins;
 mod mesh;
 mod molds;
 mod package;

@@ -19,10 +19,10 @@ use std::collections::{BTreeMap, BTreeSet};
 pub const ROUND_OFF: f64 = 1e-10;
 
 /// Share of what acts along an unknown that forces may miss of balance: 2^-43, a fourth of what `verify` grants.
-const BALANCED: f64 = 1.0 / (1_u64 << 43) as f64;
+pub(super) const BALANCED: f64 = 1.0 / (1_u64 << 43) as f64;
 
 /// Rounds in which forces are brought to balance: each takes what the round-off of the one before left.
-const MOST_ROUNDS: usize = 4;
+pub(super) const MOST_ROUNDS: usize = 4;
 
 #[derive(Clone, Debug)]
 pub enum Verdict {
