@@ -8,6 +8,7 @@ use crate::assembly::{Assembly, PartIx};
 use crate::solid::Solid;
 use glam::DVec3;
 use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
 use std::fmt::Write;
 
 /// Why there is no file.
@@ -105,11 +106,10 @@ fn shell(
         for k in 0..n {
             let (a, b) = (facet.corners[k], facet.corners[(k + 1) % n]);
             let key = (a.min(b), a.max(b));
-            if !edges.contains_key(&key) {
-                let made = edge(data, &mut corners, points, key)?;
-                edges.insert(key, (made, [0, 0]));
-            }
-            let (number, runs) = edges.get_mut(&key)?;
+            let (number, runs) = match edges.entry(key) {
+                Entry::Occupied(known) => known.into_mut(),
+                Entry::Vacant(new) => new.insert((edge(data, &mut corners, points, key)?, [0, 0])),
+            };
             runs[usize::from(a > b)] += 1;
             let way = if a < b { ".T." } else { ".F." };
             ring.push(data.add(&format!("ORIENTED_EDGE('',*,*,#{number},{way})")));
