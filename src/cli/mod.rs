@@ -44,9 +44,7 @@ pub fn main(args: Args) -> ExitCode {
         let _ = rayon::ThreadPoolBuilder::new().num_threads(usize::from(n)).build_global();
     }
     std::panic::set_hook(Box::new(|_| {}));
-    let done = catch_unwind(AssertUnwindSafe(|| dispatch(&args)));
-    let result = done.unwrap_or_else(|panic| Err(Trouble::ours(panic.as_ref())));
-    match result.and_then(|told| print(&told, &args.common)) {
+    match guarded(|| dispatch(&args)).and_then(|told| print(&told, &args.common)) {
         Ok(News::Good) => ExitCode::SUCCESS,
         Ok(News::Other) => ExitCode::from(1),
         Err(trouble) => {
@@ -113,4 +111,35 @@ fn print(told: &Told, common: &Common) -> Result<News, Trouble> {
         Err(e) if e.kind() != std::io::ErrorKind::BrokenPipe => Err(Trouble::Word(format!("stdout: {e}"))),
         _ => Ok(told.news),
     }
+}
+
+/// What the program prints with `--json`, for callers that are no terminal.
+pub struct Answered {
+    /// The exit code: 0 good news for the verb, 1 answered otherwise.
+    pub code: u8,
+    pub json: String,
+    pub remarks: Vec<String>,
+}
+
+/// The answer to these words (without the program's name). Bad input, or a fault of ours: what is wrong, in words.
+pub fn answered(words: &[String]) -> Result<Answered, String> {
+    let all = std::iter::once("weavelock").chain(words.iter().map(String::as_str)).chain(["--json", "--quiet"]);
+    let args = <Args as clap::Parser>::try_parse_from(all).map_err(|e| e.render().to_string())?;
+    let told = guarded(|| dispatch(&args)).map_err(|trouble| trouble.to_string())?;
+    let code = match told.news {
+        News::Good => 0,
+        News::Other => 1,
+    };
+    Ok(Answered { code, json: told.json, remarks: told.remarks })
+}
+
+/// The assembly of a spec or puzzle file, with its contacts.
+pub fn joined(file: &std::path::Path) -> Result<crate::contact::Joined, String> {
+    let placed = guarded(|| Ok(load::spec(file, &args::PuzzleArgs::default())?.joined()?));
+    placed.map(|p| p.joined).map_err(|trouble| trouble.to_string())
+}
+
+/// What slips through as a panic is a fault of ours, told as such.
+fn guarded<T>(call: impl FnOnce() -> Result<T, Trouble>) -> Result<T, Trouble> {
+    catch_unwind(AssertUnwindSafe(call)).unwrap_or_else(|panic| Err(Trouble::ours(panic.as_ref())))
 }
