@@ -18,6 +18,20 @@ use std::borrow::Cow;
 /// tell cells apart. It only affects the cost.
 const MOST_ARC: f64 = 0.25;
 
+const OVERLAP: &str = "the parts overlap on the way";
+const TOO_NEAR: &str = "the parts come nearer than the plan says";
+
+/// A cell where the move starts, and the box around its places over a stretch.
+type Boxed = (Placed, (DVec3, DVec3));
+
+/// A part over a stretch of a move that turns.
+#[derive(Clone, Copy)]
+struct Over<'m> {
+    part: PartIx,
+    cells: &'m [Boxed],
+    path: &'m Path,
+}
+
 /// Two groups of a move: parts that go along the same path.
 #[derive(Clone, Copy)]
 struct Sides<'m> {
@@ -79,14 +93,14 @@ impl Scene<'_> {
                 let (both, at) = ([*a, *b], ball.at);
                 if ball.radius > self.tolerance {
                     let names = self.names(both.into_iter());
-                    return refuse(step, &names, ball.radius, at, "the parts overlap on the way");
+                    return refuse(step, &names, ball.radius, at, OVERLAP);
                 }
                 deepest = deepest.max(ball.radius);
                 if m.clear > self.tolerance && -2.0 * ball.radius < m.clear {
                     let Some(gap) = gap(&x.cell, &y.cell, way) else { return unsolved(step) };
                     if gap.distance < m.clear - self.tolerance {
                         let names = self.names(both.into_iter());
-                        return refuse(step, &names, 0.0, gap.at, "the parts come nearer than the plan says");
+                        return refuse(step, &names, 0.0, gap.at, TOO_NEAR);
                     }
                 }
             }
@@ -113,7 +127,9 @@ impl Scene<'_> {
                 let xs = self.over(a, m, &p, span);
                 for &b in sides.b {
                     let ys = self.over(b, m, &q, span);
-                    if let Some(bad) = self.arc(step, (a, &xs, &p), (b, &ys, &q), span, keep) {
+                    let (x, y) =
+                        (Over { part: a, cells: &xs, path: &p }, Over { part: b, cells: &ys, path: &q });
+                    if let Some(bad) = self.arc(step, x, y, span, keep) {
                         return bad;
                     }
                 }
@@ -123,7 +139,7 @@ impl Scene<'_> {
     }
 
     /// The cells of a part with their boxes over the stretch, and the box around all.
-    fn over(&self, p: PartIx, m: &Move, path: &Path, span: Span) -> Vec<(Placed, (DVec3, DVec3))> {
+    fn over(&self, p: PartIx, m: &Move, path: &Path, span: Span) -> Vec<Boxed> {
         let boxed = |c: Placed| {
             let b = box_over(Moving { cell: &c, path }, span);
             (c, b)
@@ -131,39 +147,30 @@ impl Scene<'_> {
         self.start(p, m).into_owned().into_iter().map(boxed).collect()
     }
 
-    fn arc(
-        &self,
-        step: usize,
-        (a, xs, p): (PartIx, &[(Placed, (DVec3, DVec3))], &Path),
-        (b, ys, q): (PartIx, &[(Placed, (DVec3, DVec3))], &Path),
-        span: Span,
-        keep: Keep,
-    ) -> Option<Checked> {
+    fn arc(&self, step: usize, x: Over, y: Over, span: Span, keep: Keep) -> Option<Checked> {
         let margin = keep.distance.max(0.0);
         let meet =
-            |x: &(DVec3, DVec3), y: &(DVec3, DVec3)| (x.0 - y.1).max(y.0 - x.1).max_element() <= margin;
-        let whole = |cells: &[(Placed, (DVec3, DVec3))]| {
+            |a: &(DVec3, DVec3), b: &(DVec3, DVec3)| (a.0 - b.1).max(b.0 - a.1).max_element() <= margin;
+        let whole = |cells: &[Boxed]| {
             let start = (DVec3::INFINITY, DVec3::NEG_INFINITY);
             cells.iter().fold(start, |(l, h), (_, b)| (l.min(b.0), h.max(b.1)))
         };
-        if !meet(&whole(xs), &whole(ys)) {
+        let (all_x, all_y) = (whole(x.cells), whole(y.cells));
+        if !meet(&all_x, &all_y) {
             return None;
         }
-        for (x, _) in xs.iter().filter(|x| meet(&x.1, &whole(ys))) {
-            let around = box_over(Moving { cell: x, path: p }, span);
-            let near = ys.iter().filter(|y| meet(&around, &y.1));
-            for (y, _) in near {
-                match swept(Moving { cell: x, path: p }, Moving { cell: y, path: q }, span, keep) {
+        for (a, around) in x.cells.iter().filter(|a| meet(&a.1, &all_y)) {
+            for (b, _) in y.cells.iter().filter(|b| meet(around, &b.1)) {
+                let pair = (Moving { cell: a, path: x.path }, Moving { cell: b, path: y.path });
+                let names = || self.names([x.part, y.part].into_iter());
+                match swept(pair.0, pair.1, span, keep) {
                     Swept::Kept => {}
                     Swept::Broken { radius, at } => {
-                        let why = if radius > keep.tolerance {
-                            "the parts overlap on the way"
-                        } else {
-                            "the parts come nearer than the plan says"
-                        };
-                        return Some(refuse(step, &self.names([a, b].into_iter()), radius, at, why));
+                        let overlap = radius > keep.tolerance;
+                        let why = if overlap { OVERLAP } else { TOO_NEAR };
+                        return Some(refuse(step, &names(), radius, at, why));
                     }
-                    Swept::Undecided => return Some(undecided(step, &self.names([a, b].into_iter()))),
+                    Swept::Undecided => return Some(undecided(step, &names())),
                 }
             }
         }
