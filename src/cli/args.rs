@@ -178,6 +178,12 @@ pub struct Fab {
     /// Cut this much off below, for a flat print face: `--flatten "0.2 mm"`
     #[arg(long, value_name = "LENGTH", value_parser = length)]
     pub flatten: Option<f64>,
+    /// Form molds by the parts around a part instead of the part: the direct mold, without clearance
+    #[arg(long)]
+    pub direct: bool,
+    /// Castings of a shape at once in each mold
+    #[arg(long, value_name = "N", default_value = "1", value_parser = clap::value_parser!(u8).range(1..=100))]
+    pub gang: u8,
     /// Also check with OpenSCAD, PrusaSlicer (information and slicing) and ADMesh, where installed
     #[arg(long)]
     pub check: bool,

@@ -123,7 +123,8 @@ pub struct Answered {
 
 /// The answer to these words (without the program's name). Bad input, or a fault of ours: what is wrong, in words.
 pub fn answered(words: &[String]) -> Result<Answered, String> {
-    let all = std::iter::once("weavelock").chain(words.iter().map(String::as_str)).chain(["--json", "--quiet"]);
+    let all =
+        std::iter::once("weavelock").chain(words.iter().map(String::as_str)).chain(["--json", "--quiet"]);
     let args = <Args as clap::Parser>::try_parse_from(all).map_err(|e| e.render().to_string())?;
     let told = guarded(|| dispatch(&args)).map_err(|trouble| trouble.to_string())?;
     let code = match told.news {

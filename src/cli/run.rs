@@ -9,6 +9,7 @@ use super::hands;
 use super::load::{self, Loaded, Placed};
 use super::make;
 use super::molded;
+use super::package;
 use super::paged;
 use super::questions;
 use super::repeats;
@@ -26,6 +27,8 @@ use crate::spec::{Cut, Layout, Subject};
 use crate::weave::{Origin, Weave};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
+use weavelock_fab::process::Route;
+use weavelock_fab::report::Report;
 
 pub fn example(common: &Common) -> Result<Told, Trouble> {
     everything(load::example()?, Path::new("out"), common)
@@ -162,7 +165,9 @@ fn everything(loaded: Loaded, out: &Path, common: &Common) -> Result<Told, Troub
     let folder = out.join("parts");
     let made = make::made(&placed, &folder)?;
     let fab = make::told_fab(&made, &folder);
+    let cast = packaged(&placed, &made, &out.join("package"), common)?;
     let mut files = vec![folder.display().to_string()];
+    files.extend(cast.iter().map(|_| out.join("package").display().to_string()));
     let mut keep = |name: &str, bytes: &[u8]| -> Result<(), Trouble> {
         let path = out.join(name);
         write_whole(&path, bytes)?;
@@ -183,7 +188,19 @@ fn everything(loaded: Loaded, out: &Path, common: &Common) -> Result<Told, Troub
     let parts = Answer::Given(make::fab_chapter(&made, &folder, &[]));
     let ledger = Answer::Given(make::ledger_chapter(&made));
     keep("report.html", page(&input(&placed, &asked, as_made.as_ref(), parts, ledger)).as_bytes())?;
+    let fab = cast.unwrap_or(fab);
     Ok(summary(&placed, asked, as_made, fab, files, out))
+}
+
+/// Where something is cast, parts alone are of little use: then the whole package, with its molds.
+fn packaged(placed: &Placed, made: &Report, out: &Path, common: &Common) -> Result<Option<Told>, Trouble> {
+    if made.routes.iter().all(|r| r.process.route == Route::Print) {
+        return Ok(None);
+    }
+    if !common.quiet {
+        eprintln!("making the molds ...");
+    }
+    package::of_run(placed, out).map(Some)
 }
 
 /// Where the parts as they touch do not go together: whether they do with the clearance that they are made with.
@@ -226,7 +243,7 @@ fn chapter(told: &Result<Told, String>) -> Answer<Chapter> {
 
 /// What is not built; said wherever a whole run is told.
 const LIMITS: [&str; 4] = [
-    "A run makes the parts alone; `weavelock fab` makes the package with plates, sheets, coupon and, for cast parts, molds of two parts.",
+    "A run makes the parts, and where something is cast the package with its molds; `weavelock fab` makes a package with plates, sheets and coupon of prints too.",
     "Plans are straight moves of parts and groups; turns and moves in several stretches are not searched.",
     "Locked is first order at zero clearance; the least clearance that opens a lock is not searched for yet.",
     "The tiles are those of the sampled sites; the check says whether its verdict holds for the curved bisectors too.",
