@@ -13,6 +13,7 @@ use crate::assembly::PartIx;
 use glam::DVec3;
 use rayon::prelude::*;
 use std::collections::{BTreeMap, BTreeSet};
+use std::sync::OnceLock;
 
 /// What the sum of up to a hundred thousand products of numbers of size 1 is off at most, with room for the solves
 /// that lead there: 1e5 units of round-off are 2.2e-11.
@@ -93,11 +94,11 @@ pub(super) fn undecided(why: impl Into<String>, size: f64) -> Verdict {
 /// Which rows a verdict starts from. All give the same verdict, but for round-off; they differ in cost.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Start {
-    /// Those that lie farthest along some axes, of the outlines of rows with one normal.
+    /// Those that lie farthest along some axes; then, where they do not lock, the outlines of rows with one normal.
     Farthest,
-    /// The outlines whole.
+    /// The outlines of rows with one normal.
     Outlines,
-    /// Those that lie farthest, of all rows.
+    /// Those that lie farthest, then all.
     FarthestOfAll,
     /// All.
     All,
@@ -132,23 +133,24 @@ impl<const W: usize> Question<'_, W> {
         if self.unknowns.count == 0 {
             return Verdict::Locked(Stress { forces: Vec::new(), rank: 0, residual: 0.0, pivot_ratio: 1.0 });
         }
-        let mut kept = match self.start {
-            Start::Farthest | Start::Outlines => kept(self.rows, self.unknowns),
-            Start::FarthestOfAll | Start::All => by_pair(self.rows, self.unknowns),
-        };
+        let all = by_pair(self.rows, self.unknowns);
+        // The outlines are made only where few rows do not do: they cost more than a verdict on those.
+        let kept = OnceLock::new();
+        let kept = || kept.get_or_init(|| self.worth(&all)).as_slice();
         let mut chosen = match self.start {
-            Start::Farthest | Start::FarthestOfAll => outermost(self.rows, &kept, self.unknowns.freedom),
-            Start::Outlines | Start::All => kept.clone(),
+            Start::Farthest | Start::FarthestOfAll => outermost(self.rows, &all, self.unknowns.freedom),
+            Start::Outlines | Start::All => kept().to_vec(),
         };
-        // Where most would be chosen, a second search costs more than the rest of the rows.
-        if 2 * chosen.len() > kept.len() {
-            chosen.clone_from(&kept);
-        }
+        let first = match self.of_chosen(&chosen) {
+            Answer::Is(Verdict::Locked(stress)) => return Verdict::Locked(stress),
+            first => first,
+        };
         if let Some(motion) = self.alone(&chosen, &kept) {
             return Verdict::Free(motion);
         }
+        let mut next = Some(first);
         loop {
-            let x = match self.of_chosen(&chosen) {
+            let x = match next.take().unwrap_or_else(|| self.of_chosen(&chosen)) {
                 Answer::Moves(x) => x,
                 Answer::Is(verdict) => return verdict,
             };
@@ -158,7 +160,7 @@ impl<const W: usize> Question<'_, W> {
             let before: BTreeSet<usize> = chosen.iter().copied().collect();
             // What few rows do not lock is asked with all that are worth it; then only what is left out by round-off joins.
             let mut more = self.broken(&x);
-            more.append(&mut kept);
+            more.extend(kept());
             if more.iter().all(|k| before.contains(k)) {
                 return undecided("a motion breaks no row by more than round-off, yet not none", ROUND_OFF);
             }
@@ -190,13 +192,24 @@ impl<const W: usize> Question<'_, W> {
     /// The motion of the first part that can start to move while all others stand still: most free assemblies have
     /// one, and its few unknowns cost nothing beside those of all parts together. What few rows do not stop is asked with
     /// all that are worth it.
-    fn alone(&self, chosen: &[usize], kept: &[usize]) -> Option<Motion> {
-        let (few, all) = (self.by_part(chosen), self.by_part(kept));
-        few.par_iter().zip(&all).enumerate().find_map_first(|(part, (few, all))| {
-            self.unknowns.column[part]?;
+    fn alone<'k>(&self, chosen: &[usize], kept: &(impl Fn() -> &'k [usize] + Sync)) -> Option<Motion> {
+        let few = self.by_part(chosen);
+        let all = OnceLock::new();
+        few.par_iter().enumerate().find_map_first(|(part, few)| {
             let moved = self.moves_alone(part, few)?;
-            self.motion(&moved).or_else(|| self.moves_alone(part, all).and_then(|x| self.motion(&x)))
+            self.motion(&moved).or_else(|| {
+                let all = all.get_or_init(|| self.by_part(kept()));
+                self.moves_alone(part, &all[part]).and_then(|x| self.motion(&x))
+            })
         })
+    }
+
+    /// The rows that are asked where few do not do.
+    fn worth(&self, all: &[usize]) -> Vec<usize> {
+        match self.start {
+            Start::Farthest | Start::Outlines => kept(self.rows, self.unknowns),
+            Start::FarthestOfAll | Start::All => all.to_vec(),
+        }
     }
 
     fn by_part(&self, rows: &[usize]) -> Vec<Vec<usize>> {
