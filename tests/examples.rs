@@ -7,7 +7,8 @@ use std::process::{Command, Output, Stdio};
 use weavelock::cli::args::Args;
 
 /// Names in the examples and what they stand for.
-const FILES: [(&str, &str); 3] = [
+const FILES: [(&str, &str); 4] = [
+    ("piston.xmpuzzle", "fixtures/puzzles/piston.xmpuzzle"),
     ("plain.toml", "fixtures/examples/plain-2x2.toml"),
     ("twill.toml", "fixtures/assemblies/woven/twill-unit.toml"),
     ("roof.toml", "fixtures/assemblies/dovetail-open.toml"),

@@ -145,7 +145,9 @@ fn outcome<C>(plan: &Plan<C>) -> Chapter {
         ),
         Outcome::NotFound => {
             let excluded = plan.stuck.iter().all(|s| s.straight_moves == Straight::None);
-            let why = if excluded {
+            let why = if plan.counted.is_some() {
+                "What was looked at on their lattice is told below; turns are not excluded."
+            } else if excluded {
                 "No group of them can leave by one straight move; turns, and moves that stop half way, were not tried."
             } else {
                 "The search gave up before every straight move was excluded."

@@ -28,7 +28,9 @@ pub struct Scene {
     /// Least corner of each piece, and its shape's number.
     at: Vec<[i32; 3]>,
     shape: Vec<usize>,
-    pairs: BTreeMap<(usize, usize), Pair>,
+    pairs: Vec<Pair>,
+    /// For each two pieces, row by row, which pair of shapes they are: the one with the lower number first.
+    pair: Vec<usize>,
 }
 
 /// States that are looked at between two looks at the bound; they share the threads.
@@ -45,14 +47,18 @@ impl Scene {
             })
             .collect();
         let of: BTreeMap<usize, &Vec<Brick>> = shapes.iter().map(|(bricks, k)| (*k, bricks)).collect();
-        let mut pairs = BTreeMap::new();
-        for (i, &a) in shape.iter().enumerate() {
-            for &b in &shape[i + 1..] {
+        let mut known: BTreeMap<(usize, usize), usize> = BTreeMap::new();
+        let (mut pairs, mut pair) = (Vec::new(), Vec::new());
+        for &a in &shape {
+            for &b in &shape {
                 let key = (a.min(b), a.max(b));
-                pairs.entry(key).or_insert_with(|| Pair::new(of[&key.0], of[&key.1]));
+                pair.push(*known.entry(key).or_insert_with(|| {
+                    pairs.push(Pair::new(of[&key.0], of[&key.1]));
+                    pairs.len() - 1
+                }));
             }
         }
-        Scene { pieces, at, shape, pairs }
+        Scene { pieces, at, shape, pairs, pair }
     }
 
     /// Steps between all pairs of `members`, shifted as the state says: the first not at all.
@@ -65,14 +71,14 @@ impl Scene {
                     (0..3).for_each(|axis| gaps.both(axis, (i, j), (0, 0)));
                     continue;
                 }
-                let (sa, sb) = (self.shape[a], self.shape[b]);
+                let pair = &self.pairs[self.pair[a * self.pieces.len() + b]];
                 let offset: [i32; 3] = std::array::from_fn(|axis| {
                     self.at[b][axis] + shift(j, axis) - self.at[a][axis] - shift(i, axis)
                 });
-                let reach = if sa <= sb {
-                    self.pairs[&(sa, sb)].reach(offset)
+                let reach = if self.shape[a] <= self.shape[b] {
+                    pair.reach(offset)
                 } else {
-                    self.pairs[&(sb, sa)].reach(offset.map(|x| -x)).turned()
+                    pair.reach(offset.map(|x| -x)).turned()
                 };
                 (0..3).for_each(|axis| gaps.both(axis, (i, j), (reach.forward[axis], reach.back[axis])));
             }
