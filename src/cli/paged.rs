@@ -43,8 +43,8 @@ fn chapter(placed: &Placed, graphs: &[DbgAnswer]) -> Chapter {
         _ => (Tone::Plain, "Along an axis some parts can start to leave the rest."),
     };
     let words = vec![
-        "Along z, at the very start of the motion: an arrow runs from a part to a part that stops it. Blue with two \
-         heads: each stops the other, for one moving up and the other down; orange: one stops the other alone."
+        "Along z, at the very start of the motion: an arrow runs from a part that would move up to a part that stops \
+         it. Blue with two heads: each stops the other; orange: one stops the other alone."
             .into(),
         "Parts that must move in different directions at once are not seen here; the verdict sees them.".into(),
     ];

@@ -23,6 +23,10 @@ pub fn read(text: &str) -> io::Result<Mesh> {
         match words[..] {
             ["v", x, y, z] => mesh.vertices.push(DVec3::from_array(numbers([x, y, z])?)),
             ["f", a, b, c] => mesh.triangles.push(numbers::<u32>([a, b, c])?.map(|v| v.saturating_sub(1))),
+            ["f", ..] => {
+                let what = "a face that is no triangle: it is read as triangles only";
+                return Err(io::Error::new(io::ErrorKind::InvalidData, what));
+            }
             _ => {}
         }
     }

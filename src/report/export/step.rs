@@ -47,7 +47,7 @@ impl Data {
     fn frame(&mut self, at: DVec3, z: DVec3, x: DVec3) -> usize {
         let (p, z, x) =
             (self.triple("CARTESIAN_POINT", at), self.triple("DIRECTION", z), self.triple("DIRECTION", x));
-        self.add(&format!("AXIS2_PLACEMENT3D('',#{p},#{z},#{x})"))
+        self.add(&format!("AXIS2_PLACEMENT_3D('',#{p},#{z},#{x})"))
     }
 }
 
