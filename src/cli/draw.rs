@@ -16,8 +16,8 @@ use crate::report::draw::{
 };
 use crate::report::file::write_whole;
 use crate::report::instructions::{self, Instructions, Need};
-use crate::report::moves::Moves;
 use clap::{Args, ValueEnum};
+use schemars::JsonSchema;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 
@@ -144,9 +144,10 @@ fn ending(asked: &Draw) -> Result<Ending, Trouble> {
     }
 }
 
-#[derive(Serialize)]
-struct DrawAnswer {
-    verb: &'static str,
+/// Answer of `draw`.
+#[derive(Serialize, JsonSchema)]
+pub struct DrawAnswer {
+    verb: String,
     files: Vec<String>,
     /// Why nothing was drawn.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -164,7 +165,7 @@ pub fn draw(placed: &Placed, asked: &Draw) -> Result<Told, Trouble> {
         What::Tile => Ok(figures::alone(asm, subject(placed, asked)?)),
         What::Witness => witness(placed),
         What::Mold => molded::figure(placed, subject(placed, asked)?, asked.route)?,
-        What::Step(k) => step(placed, &planned::moves(placed, &asked.plan)?, k)?,
+        What::Step(k) => step(placed, &asked.plan, k)?,
         What::Instructions => {
             return match sheet(placed, asked)? {
                 Ok(html) => written(placed, asked, html.into_bytes()),
@@ -225,10 +226,11 @@ fn witness(placed: &Placed) -> Result<Figure, String> {
     }
 }
 
-fn step(placed: &Placed, moves: &Moves, k: usize) -> Result<Result<Figure, String>, Trouble> {
+fn step(placed: &Placed, asked: &planned::Asked, k: usize) -> Result<Result<Figure, String>, Trouble> {
+    let moves = planned::moves(placed, asked)?;
     let count = moves.moves.len();
     if count == 0 {
-        return Ok(Err(planned::no_steps(moves)));
+        return Ok(Err(planned::no_steps(asked, &moves)));
     }
     if k > count {
         let hint = format!("the plan has {count} steps: give 1 to {count}");
@@ -247,7 +249,7 @@ fn sheet(placed: &Placed, asked: &Draw) -> Result<Result<String, String>, Troubl
     let found = planned::moves(placed, &asked.plan)?;
     let count = found.moves.len();
     if count == 0 {
-        return Ok(Err(planned::no_steps(&found)));
+        return Ok(Err(planned::no_steps(&asked.plan, &found)));
     }
     if count > MOST_PANELS {
         return Ok(Err(format!(
@@ -292,7 +294,7 @@ fn written(placed: &Placed, asked: &Draw, bytes: Vec<u8>) -> Result<Told, Troubl
     write_whole(&asked.out, &bytes)?;
     let file = asked.out.display().to_string();
     let chapter = Chapter { tone: Tone::Good, headline: format!("Drawn: {file}."), ..Chapter::default() };
-    let answer = DrawAnswer { verb: "draw", files: vec![file], not_drawn: None };
+    let answer = DrawAnswer { verb: "draw".into(), files: vec![file], not_drawn: None };
     Ok(Told::new(News::Good, &answer, &placed.joined.assembly.name, "Picture", chapter))
 }
 
@@ -303,7 +305,7 @@ fn nothing(placed: &Placed, why: String) -> Told {
         words: vec![why.clone()],
         ..Chapter::default()
     };
-    let answer = DrawAnswer { verb: "draw", files: vec![], not_drawn: Some(why) };
+    let answer = DrawAnswer { verb: "draw".into(), files: vec![], not_drawn: Some(why) };
     Told::new(News::Other, &answer, &placed.joined.assembly.name, "Picture", chapter)
 }
 

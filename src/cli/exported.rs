@@ -1,6 +1,6 @@
 //! Takes an assembly in place; writes it for other programs: meshes as they touch, the plan as an animation, tables.
 //!
-//! Not promised: STEP; no crate was found that writes valid files of it.
+//! Not promised: curved surfaces in STEP; its faces are the facets.
 
 use super::draw::ends_in;
 use super::load::Placed;
@@ -9,12 +9,13 @@ use super::questions::argument;
 use super::told::{News, Told, Trouble};
 use crate::assembly::PartIx;
 use crate::report::content::{Chapter, Tone};
-use crate::report::export::{self, glb, tables};
+use crate::report::export::{self, glb, step, tables};
 use crate::report::file::write_whole;
 use crate::report::moves::Moves;
 use crate::spec::Subject;
 use crate::weave;
 use clap::{Args, ValueEnum};
+use schemars::JsonSchema;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 
@@ -50,6 +51,8 @@ pub enum Format {
     /// 3MF, an object for each part
     #[value(name = "3mf")]
     ThreeMf,
+    /// STEP AP214: solids with flat faces, named
+    Step,
     /// Tables: parts, contacts, steps of the plan
     Csv,
     /// The draft of a woven assembly, WIF 1.1
@@ -64,12 +67,13 @@ pub enum Together {
     Whole,
 }
 
-const ENDINGS: [(Format, &str); 7] = [
+const ENDINGS: [(Format, &str); 8] = [
     (Format::Stl, "stl"),
     (Format::Obj, "obj"),
     (Format::Ply, "ply"),
     (Format::Glb, "glb"),
     (Format::ThreeMf, "3mf"),
+    (Format::Step, "step"),
     (Format::Csv, "csv"),
     (Format::Wif, "wif"),
 ];
@@ -78,10 +82,12 @@ fn ending(format: Format) -> &'static str {
     ENDINGS.iter().find(|e| e.0 == format).map_or("", |e| e.1)
 }
 
-#[derive(Serialize)]
-struct ExportAnswer {
-    verb: &'static str,
-    unit: &'static str,
+/// Answer of `export`.
+#[derive(Serialize, JsonSchema)]
+pub struct ExportAnswer {
+    verb: String,
+    /// Of the lengths in the files.
+    unit: String,
     files: Vec<String>,
 }
 
@@ -114,7 +120,7 @@ pub fn export(placed: &Placed, asked: &Export) -> Result<Told, Trouble> {
         n => format!("{n} files in {place}, in {unit}, in place."),
     };
     let chapter = Chapter { tone: Tone::Good, headline, words: names.clone(), ..Chapter::default() };
-    let answer = ExportAnswer { verb: "export", unit, files: names };
+    let answer = ExportAnswer { verb: "export".into(), unit: unit.into(), files: names };
     Ok(Told::new(News::Good, &answer, &placed.joined.assembly.name, "Files", chapter))
 }
 
@@ -138,6 +144,9 @@ fn bytes(placed: &Placed, asked: &Export, format: Format, layout: Together) -> R
         Format::ThreeMf => {
             one(export::threemf(asm, &all).map_err(|e| Trouble::Word(format!("error: 3MF: {e}")))?)
         }
+        Format::Step => one(step::step(asm, &all).map_err(|open| {
+            argument(open.to_string(), "write it as obj or ply, which keep open surfaces".into())
+        })?),
         Format::Csv => csv(placed, asked)?,
         Format::Wif => match &placed.spec.subject {
             Subject::Woven(woven) => one(weave::to_wif(&woven.weave.draft, &asm.name).into_bytes()),

@@ -82,7 +82,7 @@ pub fn flexed(placed: &Placed, settings: &Settings) -> Result<FlexAnswer, Troubl
         until: settings.time.and_then(|t| Instant::now().checked_add(t)),
         within,
     };
-    let found = flex::flex(&joined.assembly, &joined.patches, &ask).map_err(|why| {
+    let found = flex::flex(joined.touching(), &ask).map_err(|why| {
         argument(
             format!("not searched: {why}"),
             "flexible parts are found by plans, and plans need parts made of convex cells, thicker than the air".into(),
@@ -152,6 +152,13 @@ fn words(a: &FlexAnswer) -> Vec<String> {
             "Sets that no plan took apart though they are not proven locked: {}. Straight moves of parts and groups were \
              tried, turns and moves in stages were not.",
             a.unproven.len()
+        ));
+    }
+    if !a.doubtful.is_empty() {
+        words.push(format!(
+            "Sets that are locked as written, but not shown to be whatever the files' digits leave open of their contacts: {}. \
+             No bound rests on them.",
+            a.doubtful.len()
         ));
     }
     if a.clearance_mm > 0.0 {

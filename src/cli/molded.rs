@@ -16,7 +16,7 @@ use glam::DVec3;
 use std::sync::Arc;
 use weavelock_fab::mesh;
 use weavelock_fab::mold::figures::Figures;
-use weavelock_fab::mold::{self, Mold, MoldSpec, Route};
+use weavelock_fab::mold::{self, Mold, MoldSpec, Piece, Route};
 
 #[derive(ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MoldRoute {
@@ -43,6 +43,11 @@ fn made(placed: &Placed, part: PartIx, route: MoldRoute) -> Result<Mold, Trouble
     mold::make(&body, &MoldSpec::new(&asm.part(part).id, route, figures)).map_err(|e| word(&e))
 }
 
+/// The pieces that are made; others stand for the OpenSCAD sources alone.
+fn made_pieces(mold: &Mold) -> impl Iterator<Item = &Piece> {
+    mold.pieces.iter().filter(|p| p.copies > 0)
+}
+
 /// Why there are no pieces.
 fn refused(mold: &Mold) -> String {
     let found: Vec<String> = mold.findings.iter().map(|f| format!("{} ({})", f.what, f.remedy)).collect();
@@ -62,13 +67,13 @@ pub fn figure(placed: &Placed, part: PartIx, route: MoldRoute) -> Result<Result<
         Item { offset, ..Item::new(Arc::new(drawn(m)), colour) }
     };
     let mut items = vec![item(0, &mold.part, DVec3::ZERO)];
-    items.extend(mold.pieces.iter().enumerate().map(|(k, p)| item(k + 1, &p.mesh, p.pull * gap)));
+    items.extend(made_pieces(&mold).enumerate().map(|(k, p)| item(k + 1, &p.mesh, p.pull * gap)));
     let id = &placed.joined.assembly.part(part).id;
     Ok(Ok(Figure {
         name: "mold",
         scene: Scene { items, view: View::default(), background: Background::Transparent },
         alt: format!("The mold of {id}, opened along its pull, with the part between."),
-        caption: format!("{id}: {} pieces, opened.", mold.pieces.len()),
+        caption: format!("{id}: {} pieces, opened.", made_pieces(&mold).count()),
     }))
 }
 
@@ -91,7 +96,7 @@ pub fn exhibit(
         ));
     }
     let mut pieces = vec![(id.clone(), drawn(&mold.part), DVec3::ZERO)];
-    pieces.extend(mold.pieces.iter().map(|p| (p.name.clone(), drawn(&p.mesh), p.pull)));
+    pieces.extend(made_pieces(&mold).map(|p| (p.name.clone(), drawn(&p.mesh), p.pull)));
     let pull = mold.pull.direction;
     let measured = mold.measured.iter().map(|m| {
         (

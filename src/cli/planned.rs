@@ -55,12 +55,16 @@ fn read(file: &std::path::Path) -> Result<Value, Trouble> {
 }
 
 /// Why there is nothing to show.
-pub fn no_steps(moves: &Moves) -> String {
-    moves.unread.clone().unwrap_or_else(|| {
-        "there is no plan of rigid moves for the parts as they touch; with air between them there may be one: \
-         --clearance \"0.2 mm\""
-            .into()
-    })
+pub fn no_steps(asked: &Asked, moves: &Moves) -> String {
+    let words = match (&moves.unread, &asked.plan, asked.clearance) {
+        (Some(why), ..) => return why.clone(),
+        (None, Some(file), _) => return format!("the plan in {} has no steps", file.display()),
+        (None, None, Some(mm)) if mm > 0.0 => format!("no plan of rigid moves was found with {mm} mm of air"),
+        _ => "there is no plan of rigid moves for the parts as they touch; with air between them there may be one: \
+              --clearance \"0.2 mm\""
+            .into(),
+    };
+    format!("{words} (`weavelock plan` says more)")
 }
 
 /// What a plan that is shown promises.

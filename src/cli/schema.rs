@@ -3,6 +3,8 @@
 //! Not promised: that a file which fits the schema is free of faults; bounds that depend on other keys are not in it.
 
 use super::atlas::AtlasAnswer;
+use super::draw::DrawAnswer;
+use super::exported::ExportAnswer;
 use super::told::{News, Told, Trouble};
 use crate::chirality::answer::Hands;
 use crate::report::answer::fab::{FabAnswer, ProcessesAnswer};
@@ -31,6 +33,8 @@ pub fn schema() -> Result<Told, Trouble> {
         ("chirality", schema_for!(Hands)),
         ("atlas", schema_for!(AtlasAnswer)),
         ("verify", schema_for!(Verified)),
+        ("draw", schema_for!(DrawAnswer)),
+        ("export", schema_for!(ExportAnswer)),
         ("fab", schema_for!(FabAnswer)),
         ("processes", schema_for!(ProcessesAnswer)),
     ]);

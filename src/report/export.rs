@@ -5,6 +5,7 @@
 
 pub mod glb;
 pub mod ply;
+pub mod step;
 pub mod tables;
 
 use crate::assembly::{Assembly, PartIx};

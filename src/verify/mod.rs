@@ -4,6 +4,7 @@
 //! Not promised: that the spec is the one its reader meant.
 
 pub mod certificate;
+mod digits;
 mod dyadic;
 mod field;
 mod flex;
@@ -22,7 +23,9 @@ mod stress;
 use crate::assembly::{Assembly, PartIx};
 use crate::contact::{self, Joined};
 use crate::fault::Faults;
+use crate::locking::Freedom;
 use crate::report::answer::{self, CheckAnswer, PlanAnswer, Sealed};
+use crate::sampling::known;
 use crate::sequence::Outcome;
 use crate::sequence::clearance::with_clearance;
 use crate::spec::{self, Syntax};
@@ -109,10 +112,22 @@ fn check(spec: &spec::Spec, joined: &Joined, a: &CheckAnswer) -> Result<Proofs, 
     let translation =
         certificate::proof(asm, &joined.patches, &a.translation_proof, &still, About::Translations)
             .map_err(|why| format!("translations: {why}"))?;
+    within_digits(joined, a)?;
     sampling(joined, a)?;
     levels(spec, a)?;
     interlock::claims(joined, a)?;
     Ok(BTreeMap::from([("rigid".into(), rigid), ("translation".into(), translation)]))
+}
+
+/// A lock that the files' digits are found to leave open is none.
+fn within_digits(joined: &Joined, a: &CheckAnswer) -> Result<(), String> {
+    let check = answer::check_of(&joined.assembly, a).ok_or("the answer names parts that are not there")?;
+    let still: Vec<PartIx> = check.held.iter().copied().chain(check.fixed).collect();
+    for (freedom, verdict) in [(Freedom::Rigid, check.rigid), (Freedom::Translation, check.translation)] {
+        let word = verdict.word();
+        same("verdict within the files' digits", word, known(joined, &still, freedom, verdict).word())?;
+    }
+    Ok(())
 }
 
 /// Margins and chord errors are computed again, by the code that they came from: a change is noticed, and no more.
@@ -156,6 +171,7 @@ fn plan(joined: &Joined, a: &PlanAnswer) -> Result<Proofs, String> {
         if let Some(lock) = &stuck.lock {
             same("clearance of a lock", a.clearance_mm, 0.0)?;
             proofs.insert(stuck.parts.join(", "), locked_alone(joined, &stuck.parts, lock)?);
+            digits::holds(joined, &self::parts(joined, &stuck.parts)?, lock)?;
         }
     }
     let proven = a.plan.stuck.iter().any(|s| s.lock.is_some());

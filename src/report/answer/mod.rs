@@ -18,14 +18,14 @@ pub use blocking::{
 };
 pub use flex::{CoreAnswer, FlexAnswer, OrbitAnswer, SymmetryOfParts, flex};
 pub use interlock::{
-    DirectionsAnswer, InterlockAnswer, InterlockWord, KeyAnswer, LockedCore, SearchedAnswer, interlock,
+    DirectionsAnswer, InterlockAnswer, InterlockWord, KeyAnswer, LockedCore, SearchedAnswer, firm, interlock,
 };
 pub use play::{AxisPlay, Followed, PartPlay, PlayAnswer, PlayWord, play, word as play_word};
 pub use release::{
     BracketAnswer, Evidence, Length, ProcessRelease, ReleaseAnswer, ReleaseWord, bracket, length, needs_none,
 };
 pub use repeats::RepeatsAnswer;
-pub use sampling::{check_of, refined};
+pub use sampling::{check_of, refined, stress_of};
 pub use weave::{WeaveAnswer, weave};
 
 use crate::assembly::{Assembly, PartIx};

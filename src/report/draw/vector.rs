@@ -1,18 +1,19 @@
 //! Takes a scene and a size; gives an SVG: the shading as an embedded image, outlines and creases over it as vectors.
 //!
-//! Promised: the same bytes every time; a line runs where an edge of a facet that is seen lies (by identity of the facet
-//! in the samples beside it, not by distance). Not promised: ends finer than a sample, of which two go to a pixel.
+//! Promised: the same bytes every time; a line runs where a facet that meets the edge is seen beside it (by identity of
+//! the facet in the samples there, not by distance). Not promised: ends finer than a sample, of which two go to a pixel.
 
 use super::camera::Camera;
 use super::image::Size;
 use super::ink::Pens;
 use super::layer::{Layer, NOTHING, Stage};
-use super::mesh::{Edge, EdgeKind};
+use super::mesh::{Edge, EdgeKind, Mesh};
 use super::paint::{Pen, render_with};
 use super::palette::INK;
 use super::scene::{Item, Opacity, Scene};
 use crate::report::viewer::base64;
 use glam::DVec3;
+use std::collections::BTreeSet;
 use std::fmt::Write;
 use std::io;
 
@@ -102,12 +103,17 @@ impl Page<'_> {
         let (mut outline, mut crease) = (String::new(), String::new());
         for &k in items {
             let item = &self.scene.items[k as usize];
+            let around = around(&item.mesh);
             for edge in &item.mesh.edges {
-                match self.drawn(item, edge) {
-                    Some(Kind::Outline) => self.stretches(layer, k, edge, &mut outline),
-                    Some(Kind::Crease) => self.stretches(layer, k, edge, &mut crease),
-                    None => {}
-                }
+                let path = match self.drawn(item, edge) {
+                    Some(Kind::Outline) => &mut outline,
+                    Some(Kind::Crease) => &mut crease,
+                    None => continue,
+                };
+                // A facet may be finer than a sample: any that meets an end of the edge shows that it is seen.
+                let [a, b] = edge.ends.map(|v| &around[v as usize]);
+                let near = Near { item: k, facets: a.union(b).copied().collect() };
+                self.stretches(layer, edge, &near, path);
             }
         }
         [
@@ -131,15 +137,15 @@ impl Page<'_> {
         }
     }
 
-    /// Adds the stretches of an edge beside which one of its own facets is seen.
-    fn stretches(&self, layer: &Layer, k: u32, edge: &Edge, path: &mut String) {
-        let item = &self.scene.items[k as usize];
+    /// Adds the stretches of an edge beside which one of the facets near it is seen.
+    fn stretches(&self, layer: &Layer, edge: &Edge, near: &Near, path: &mut String) {
+        let item = &self.scene.items[near.item as usize];
         let [a, b] = edge.ends.map(|v| self.camera.project(item.place(item.mesh.vertices[v as usize])));
         let steps = ((b - a).truncate().length() * FINE as f64).ceil().max(1.0) as usize;
         let at = |s: usize| a + (b - a) * (s as f64 / steps as f64);
         let mut from: Option<usize> = None;
         for s in 0..=steps + 1 {
-            let seen = s <= steps && self.seen(layer, k, edge, at(s));
+            let seen = s <= steps && self.seen(layer, near, at(s));
             match (from, seen) {
                 (None, true) => from = Some(s),
                 (Some(f), false) => {
@@ -154,12 +160,12 @@ impl Page<'_> {
         }
     }
 
-    fn seen(&self, layer: &Layer, k: u32, edge: &Edge, p: DVec3) -> bool {
+    fn seen(&self, layer: &Layer, near: &Near, p: DVec3) -> bool {
         let (x, y) = ((p.x * FINE as f64).floor() as i64, (p.y * FINE as f64).floor() as i64);
         let own = |cell: u32| {
             let f = &self.stage.triangles[cell as usize];
             let facet = self.scene.items[f.item as usize].mesh.triangles[f.triangle as usize].facet;
-            f.item == k && edge.facets.contains(&facet)
+            f.item == near.item && near.facets.contains(&facet)
         };
         (-1..=1).flat_map(|dy| (-1..=1).map(move |dx| (x + dx, y + dy))).any(|(x, y)| {
             let inside = (0..layer.width as i64).contains(&x) && (0..layer.rows as i64).contains(&y);
@@ -169,6 +175,21 @@ impl Page<'_> {
             }
         })
     }
+}
+
+/// Facets of an item that meet an edge or one of its ends.
+struct Near {
+    item: u32,
+    facets: Vec<u32>,
+}
+
+/// The facets around each vertex.
+fn around(mesh: &Mesh) -> Vec<BTreeSet<u32>> {
+    let mut all = vec![BTreeSet::new(); mesh.vertices.len()];
+    for edge in &mesh.edges {
+        edge.ends.iter().for_each(|v| all[*v as usize].extend(edge.facets));
+    }
+    all
 }
 
 #[derive(Clone, Copy)]

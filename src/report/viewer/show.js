@@ -136,7 +136,7 @@ function show(exhibits, stage, canvas) {
     const { across, high } = reach(poses, on), radius = Math.hypot(across, high);
     // What is seen of a drum of that size: its width, and its height on the picture, half of them; the near rim looms.
     const e = (elevation * Math.PI) / 180, tall = across * Math.abs(Math.sin(e)) + high * Math.cos(e);
-    const distance = (Math.max(across / (SLOPE * aspect), tall / SLOPE) + 0.5 * across * Math.cos(e)) / zoom;
+    const distance = (Math.max(across / (SLOPE * aspect), tall / SLOPE) + 0.25 * across * Math.cos(e)) / zoom;
     const target = add(scale(right, pan[0] * exhibit.radius), scale(up, pan[1] * exhibit.radius));
     const eye = add(target, scale(back, distance));
     const far = distance + radius * 2 + norm(target), near = Math.max(distance - radius * 2 - norm(target), far / 2000);

@@ -144,7 +144,7 @@ function stage(canvas) {
     gl.disable(gl.BLEND);
     faces("solid", gl.BACK, 2);
     // The walls seen from inside, through the cut, stand for the cut face; they win over a neighbour's touching face.
-    if (look.sectioned) faces("solid", gl.FRONT, 1);
+    if (look.sectioned) faces("solid", gl.FRONT, -2);
     if (look.flat) return;
     gl.enable(gl.BLEND);
     gl.blendFuncSeparate(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA, gl.ONE, gl.ONE_MINUS_SRC_ALPHA);

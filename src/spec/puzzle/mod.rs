@@ -103,7 +103,7 @@ impl Problem {
 }
 
 /// What a stretch of the file is read with: places and faults.
-pub(self) struct Reading<'t> {
+struct Reading<'t> {
     file: String,
     lines: Lines<'t>,
     faults: Vec<Fault>,
