@@ -26,7 +26,7 @@ const MOST_WORK: usize = 3_000_000;
 /// Ways to fill the result that are taken apart before the first one is taken.
 const MOST_TRIED: usize = 2_000;
 
-/// Positions looked at for each of them.
+/// Positions looked at for each of them, and for parts that straight moves do not take apart.
 const MOST_STATES: usize = 1_000_000;
 
 /// A puzzle file as asked.
@@ -146,7 +146,7 @@ pub fn plan(
 ) -> Searched {
     let is_whole = |plan: &Plan<Certificate>| plan.outcome == Outcome::Assembled;
     if puzzle_of(placed).is_some() && clearance_mm == 0.0 {
-        return match on_its_lattice(placed, of) {
+        return match on_its_lattice(placed, of, None) {
             Ok(plan) if is_whole(&plan) => Ok(plan),
             Ok(plan) => Ok(straight().ok().filter(is_whole).unwrap_or(plan)),
             Err(_) => straight(),
@@ -154,7 +154,7 @@ pub fn plan(
     }
     match straight() {
         Ok(plan) if is_whole(&plan) => Ok(plan),
-        found => match on_its_lattice(placed, of) {
+        found => match on_its_lattice(placed, of, Some(MOST_STATES)) {
             Ok(plan) if clearance_mm == 0.0 => Ok(plan),
             // With air between them the parts can do all that they can do without; fewer moves may do.
             Ok(plan) if is_whole(&plan) => Ok(Plan { counted: None, ..plan }),
@@ -170,7 +170,11 @@ fn puzzle_of(placed: &Placed) -> Option<&Puzzle> {
     }
 }
 
-fn on_its_lattice(placed: &Placed, of: &[PartIx]) -> Result<Plan<Certificate>, NoLattice> {
+fn on_its_lattice(
+    placed: &Placed,
+    of: &[PartIx],
+    most: Option<usize>,
+) -> Result<Plan<Certificate>, NoLattice> {
     let joined = &placed.joined;
     let weights = puzzle_of(placed).map(weights);
     let asked = Asked {
@@ -178,6 +182,7 @@ fn on_its_lattice(placed: &Placed, of: &[PartIx]) -> Result<Plan<Certificate>, N
         parts: of,
         step: weights.is_some().then_some(1.0),
         weight: |p: PartIx| weights.as_ref().and_then(|w| w.get(p.at()).copied()).unwrap_or(1),
+        most,
     };
     lattice::answer::plan(&asked, |set| locked(joined, set))
 }

@@ -1,4 +1,6 @@
 //! Takes a puzzle and a solution; gives where its pieces lie, voxel by voxel, or every place where they do not fit.
+//!
+//! Promised: pieces given share no voxel and fill the result as it asks. Not promised: that a piece hangs together.
 
 use crate::spec::puzzle::turn::{Matrix, TURNS, apply, matrix};
 use crate::spec::puzzle::{Fill, Placement, Puzzle, Shape, Solution};

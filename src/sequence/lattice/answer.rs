@@ -63,6 +63,8 @@ pub struct Asked<'a, W> {
     pub step: Option<f64>,
     /// As in [`Piece`].
     pub weight: W,
+    /// Positions looked at in all; by default as many as memory holds.
+    pub most: Option<usize>,
 }
 
 /// The plan on the lattice. `locked` proves a set of parts locked to first order, or gives None.
@@ -70,7 +72,7 @@ pub fn plan<C>(
     asked: &Asked<impl Fn(PartIx) -> i32>,
     locked: impl Fn(&[PartIx]) -> Option<C>,
 ) -> Result<Plan<C>, NoLattice> {
-    let found = on_lattice(asked.asm, asked.parts, asked.step, &asked.weight, None)?;
+    let found = on_lattice(asked.asm, asked.parts, asked.step, &asked.weight, asked.most)?;
     let stuck: Vec<Stuck<C>> =
         found.apart.whole.kept().into_iter().map(|k| stuck(asked, k, &locked)).collect();
     let outcome = match () {

@@ -4,7 +4,7 @@
 //! fewest. A set from which nothing can be parted proves that no translations take the whole apart: other parts only
 //! stand in the way. The level is written as BurrTools 0.6 writes it (Roever; `disassembly.cpp`): moves until the first
 //! parting, then those of the parts that stayed, then those of the parts that left; a set that needs no more than one
-//! move at a time is left out.
+//! move at a time is left out. Not promised: the fewest moves in all.
 
 use super::moves::{Mask, Way};
 use super::pairs::around;

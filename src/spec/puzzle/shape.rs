@@ -1,6 +1,7 @@
 //! Takes a `voxel` element; gives the shape that it draws.
 //!
 //! Voxels stand in rows along x, then y, then z: `#` fixed, `+` variable, `_` empty, a colour's number behind it.
+//! Not promised: that a shape hangs together.
 
 use super::Reading;
 use super::xml::Node;

@@ -1,8 +1,8 @@
 //! Takes the index of a turn as puzzle files count them; gives its matrix.
 //!
 //! Turn k is a quarter turn about x done k mod 4 times, then one of six: nothing, one to three quarter turns about y, one
-//! or three about z. A quarter turn takes y to z about x, z to -x... of each axis as [`QUARTERS`] says. 24 to 47 are the
-//! same after mirroring x. (Facts from BurrTools' table `tabs_0/rotmatrix.inc`; tests hold the order against it.)
+//! or three about z. A quarter turn takes y to z about x, x to z about y, x to y about z. 24 to 47 are the same after
+//! mirroring x. Not promised: that these are the indices of any other program. (Facts from BurrTools' table `tabs_0/rotmatrix.inc`; tests hold the order against it.)
 
 /// Proper turns.
 pub const TURNS: usize = 24;
