@@ -1,6 +1,7 @@
 //! Plans: what must come apart does, what must not does not, and no plan that overlaps is accepted.
 
 mod build;
+mod journeys;
 mod made;
 mod turns;
 mod woven;

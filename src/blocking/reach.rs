@@ -24,10 +24,19 @@ pub enum Reach {
 
 /// Along the view's direction, `i` moving and `j` still.
 pub fn reach(view: &View, i: PartIx, j: PartIx, touch: Touch) -> Reach {
+    until(view, i, j, touch, touch.depth() / 2.0)
+}
+
+/// As [`reach`], but only until it touches what it would run into.
+pub fn reach_contact(view: &View, i: PartIx, j: PartIx, touch: Touch) -> Reach {
+    until(view, i, j, touch, 0.0)
+}
+
+fn until(view: &View, i: PartIx, j: PartIx, touch: Touch, radius: f64) -> Reach {
     let ((cells_i, at_i), (cells_j, at_j)) = (view.shapes.part(i), view.shapes.part(j));
     let mut least = f64::INFINITY;
     let unsolved = meetings(view, i, j, touch, |m| {
-        match first_overlap(&cells_i[m.a], &cells_j[m.b], at_j - at_i, view.d, touch) {
+        match first_overlap(&cells_i[m.a], &cells_j[m.b], at_j - at_i, view.d, radius) {
             Some(t) => least = least.min(t),
             None => return Some(()),
         }
@@ -40,10 +49,9 @@ pub fn reach(view: &View, i: PartIx, j: PartIx, touch: Touch) -> Reach {
     }
 }
 
-/// Least t >= 0 at which a ball of diameter `touch` fits into both cells: over its centre x and t, inside `b` moved by
+/// Least t >= 0 at which a ball of this radius fits into both cells: over its centre x and t, inside `b` moved by
 /// `step`, and inside `a` moved by t d.
-fn first_overlap(a: &Convex, b: &Convex, step: DVec3, d: DVec3, touch: Touch) -> Option<f64> {
-    let radius = touch.depth() / 2.0;
+fn first_overlap(a: &Convex, b: &Convex, step: DVec3, d: DVec3, radius: f64) -> Option<f64> {
     let of_a = a.planes.iter().map(|&(n, c)| ([n.x, n.y, n.z, -n.dot(d)], c - radius));
     let of_b = b.planes.iter().map(|&(n, c)| ([n.x, n.y, n.z, 0.0], c + n.dot(step) - radius));
     let rows = of_a.chain(of_b).chain([([0.0, 0.0, 0.0, -1.0], 0.0)]);

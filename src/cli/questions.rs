@@ -15,7 +15,7 @@ use crate::report::answer::{self, Certificate, PlanAnswer, Sealed};
 use crate::report::file::write_whole;
 use crate::report::words as chapters;
 use crate::sequence::clearance::with_clearance;
-use crate::sequence::{self, Outcome, Plan, Searched};
+use crate::sequence::{self, Motions, Outcome, Plan, Searched};
 use crate::verify;
 use crate::weave::{self, Weave};
 use std::path::Path;
@@ -40,11 +40,12 @@ pub fn planned(placed: &Placed, of: &[PartIx], clearance_mm: f64) -> PlanAnswer 
     let (asm, patches) = (&joined.assembly, &joined.patches);
     let found = puzzle::plan(placed, of, clearance_mm, || {
         if clearance_mm > 0.0 {
-            with_clearance(asm, patches, clearance_mm / asm.mm_per_unit)
-                .map_err(|e| e.to_string())
-                .and_then(|made| sequence::plan_of(&made, of, &[], |_| None).map_err(|e| e.to_string()))
+            with_clearance(asm, patches, clearance_mm / asm.mm_per_unit).map_err(|e| e.to_string()).and_then(
+                |made| sequence::plan_by(&made, of, &[], Motions::Any, |_| None).map_err(|e| e.to_string()),
+            )
         } else {
-            sequence::plan_of(asm, of, patches, |set| locked(joined, set)).map_err(|e| e.to_string())
+            sequence::plan_by(asm, of, patches, Motions::Any, |set| locked(joined, set))
+                .map_err(|e| e.to_string())
         }
     });
     let (plan, why) = found.map_or_else(|why| (nothing(), Some(why)), |plan| (plan, None));

@@ -5,7 +5,7 @@
 use super::content::{Column, Table};
 use super::words::decimal;
 use crate::assembly::Assembly;
-use crate::sequence::{Ends, Motion, Plan, Rigid, Screw, Step};
+use crate::sequence::{Ends, Gives, Motion, Outcome, Plan, Reached, Rigid, Screw, Step};
 
 /// Every step backward, the last first; several motions at once take a row each.
 pub fn table<C>(assembly: &Assembly, plan: &Plan<C>) -> Table {
@@ -68,4 +68,48 @@ pub fn count<C>(plan: &Plan<C>) -> String {
         format!("{n} {word}")
     });
     told.collect::<Vec<_>>().join(" and ")
+}
+
+/// How far each part of the sets that stayed together got, where that was searched.
+pub fn reached<C>(plan: &Plan<C>) -> Option<Table> {
+    let all = plan.stuck.iter().flat_map(|s| &s.reached);
+    let moved = all.filter(|r| r.distance_mm > 0.0 || r.turned_degrees > 0.0);
+    let row = |r: &Reached| {
+        vec![
+            r.part.clone(),
+            format!("{:.2}", r.distance_mm),
+            vector(r.direction),
+            format!("{:.1}", r.turned_degrees),
+        ]
+    };
+    let rows: Vec<Vec<String>> = moved.map(row).collect();
+    let head = [Column::words("part"), Column::numbers("shift, mm"), Column::words("toward")];
+    (!rows.is_empty()).then(|| Table {
+        caption: "The farthest that each part got in the search for a way out".into(),
+        head: head.into_iter().chain([Column::numbers("turned, degrees")]).collect(),
+        rows,
+    })
+}
+
+/// Which part of a locked set would have to bend, in words.
+pub fn gives<C>(plan: &Plan<C>) -> Vec<String> {
+    plan.stuck.iter().filter_map(|s| s.gives.as_ref()).map(told_gives).collect()
+}
+
+fn told_gives(g: &Gives) -> String {
+    let past: Vec<&str> = g.past.iter().map(|p| p.part.as_str()).collect();
+    let rest = match g.rest {
+        Outcome::Assembled => "the others of its set go together without it",
+        _ => "for the others of its set no straight plan was found",
+    };
+    format!(
+        "Made soft, {} could go in last, along {}: {rest}. It has to give way by {:.2} mm past {}; squeezed by that \
+         where it is in the way, its mean strain is {:.0} % (depth over width, on the best of the ways sampled; an \
+         estimate, not a finite element result).",
+        g.part,
+        vector(g.direction.map(|c| -c)),
+        g.depth_mm,
+        past.join(", "),
+        100.0 * g.strain
+    )
 }

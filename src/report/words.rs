@@ -95,15 +95,21 @@ fn free(assembly: &Assembly, motion: &Motion) -> Chapter {
 
 /// How does it go together? Steps are told in the order of assembly.
 pub fn plan<C>(assembly: &Assembly, plan: &Plan<C>) -> Chapter {
-    let searched = [plan.searched.sets, plan.searched.directions].map(thousands);
+    let searched = [plan.searched.sets, plan.searched.directions, plan.searched.states].map(thousands);
     let touch = format!("overlap up to {} mm", scientific(plan.touch * assembly.mm_per_unit));
     let mut facts: Vec<(String, String)> = plan.counted.iter().flat_map(counted).collect();
     facts.extend([
-        fact("searched", format!("{} sets, {} directions", searched[0], searched[1])),
+        fact(
+            "searched",
+            format!("{} sets, {} directions, {} poses on the way", searched[0], searched[1], searched[2]),
+        ),
         fact("counts as touching", touch),
     ]);
-    let tables = if plan.steps.is_empty() { vec![] } else { vec![steps::table(assembly, plan)] };
-    Chapter { facts, tables, ..outcome(plan) }
+    let steps = (!plan.steps.is_empty()).then(|| steps::table(assembly, plan));
+    let tables = steps.into_iter().chain(steps::reached(plan)).collect();
+    let mut chapter = Chapter { facts, tables, ..outcome(plan) };
+    chapter.words.extend(steps::gives(plan));
+    chapter
 }
 
 /// How many moves along the axes, as puzzlers count them.
@@ -144,9 +150,13 @@ fn outcome<C>(plan: &Plan<C>) -> Chapter {
             )),
         ),
         Outcome::NotFound => {
+            let searched = plan.searched.states > 0;
             let excluded = plan.stuck.iter().all(|s| s.straight_moves == Straight::None);
             let why = if plan.counted.is_some() {
                 "What was looked at on their lattice is told below; turns are not excluded."
+            } else if searched {
+                "Looked at were single straight moves, straight moves that stop half way, turns and joint motions, until \
+                  the counted work was used up; how far each part got is told below."
             } else if excluded {
                 "No group of them can leave by one straight move; turns, and moves that stop half way, were not tried."
             } else {

@@ -3,6 +3,8 @@
 use super::Move;
 use super::field::{Field, Set};
 use super::gap::least_gap;
+use super::give::Giving;
+use super::journey::{self, Leg, written};
 use super::lattice::answer::Counted;
 use super::motion::{Ends, Motion, Shift};
 use crate::assembly::PartIx;
@@ -60,6 +62,49 @@ pub struct Stuck<C> {
     pub straight_moves: Straight,
     /// Proof that these parts are locked, where there is one.
     pub lock: Option<C>,
+    /// How far each part got in the search for a way out; empty where none was made.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub reached: Vec<Reached>,
+    /// For a set that is locked: the part that could be the flexible one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub gives: Option<Gives>,
+}
+
+/// The part of a locked set that goes in last, by bending: an estimate from sampled straight ways, no proof.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct Gives {
+    /// Goes in when the others of the set are together, before every step of the plan that joins the set to more.
+    pub part: String,
+    /// Unit vector of its way out; it goes in the other way.
+    pub direction: [f64; 3],
+    /// Past whom it goes, and how deep it or they must give way.
+    pub past: Vec<Past>,
+    /// The greatest of these depths.
+    pub depth_mm: f64,
+    /// Depth over the width of the cells that must give, across the way; no finite element result.
+    pub strain: f64,
+    /// What a straight plan makes of the others of the set alone.
+    pub rest: Outcome,
+}
+
+/// One part on the way of another.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct Past {
+    pub part: String,
+    /// A sideways shift that is enough for the two to pass.
+    pub depth_mm: f64,
+}
+
+/// The farthest that a part got in a search, against the parts that stood still in it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct Reached {
+    pub part: String,
+    /// Of the middle of its box.
+    pub distance_mm: f64,
+    /// Unit vector toward there, in world coordinates; zero where it did not move.
+    pub direction: [f64; 3],
+    /// The most that it was turned, anywhere.
+    pub turned_degrees: f64,
 }
 
 /// How much was looked at.
@@ -67,6 +112,21 @@ pub struct Stuck<C> {
 pub struct Searched {
     pub sets: usize,
     pub directions: usize,
+    /// Poses reached by moves that stop half way, turns and joint motions.
+    #[serde(default)]
+    pub states: usize,
+    /// Programs solved for them.
+    #[serde(default)]
+    pub programs: usize,
+}
+
+impl Searched {
+    pub(super) fn add(&mut self, more: Searched) {
+        self.sets += more.sets;
+        self.directions += more.directions;
+        self.states += more.states;
+        self.programs += more.programs;
+    }
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -99,13 +159,51 @@ pub(super) fn step(field: &Field, m: &Move) -> Step {
     }
 }
 
+/// A motion within a set.
+pub(super) fn leg(field: &Field, set: &Set, leg: &Leg) -> Step {
+    let moved: Set = leg.movers.iter().flat_map(|(parts, _)| parts.iter().copied()).collect();
+    let stays = set.difference(&moved).copied().collect();
+    Step {
+        parts: ids(field, &moved),
+        motion: written(leg, |parts| ids(field, parts)),
+        clear: leg.clear,
+        ends: Ends::Inside,
+        stays: ids(field, &stays),
+    }
+}
+
 pub(super) fn stuck<C>(
     field: &Field,
-    s: (Set, Straight),
-    locked: impl Fn(&[PartIx]) -> Option<C>,
+    (set, straight_moves): (Set, Straight),
+    lock: Option<C>,
+    reached: &[journey::Reached],
 ) -> Stuck<C> {
-    let parts: Vec<PartIx> = s.0.iter().copied().collect();
-    Stuck { parts: ids(field, &s.0), straight_moves: s.1, lock: locked(&parts) }
+    let told = |r: &journey::Reached| Reached {
+        part: field.asm.part(r.part).id.clone(),
+        distance_mm: r.shift.length() * field.asm.mm_per_unit,
+        direction: r.shift.normalize_or_zero().to_array(),
+        turned_degrees: r.turn.to_degrees(),
+    };
+    Stuck {
+        parts: ids(field, &set),
+        straight_moves,
+        lock,
+        reached: reached.iter().map(told).collect(),
+        gives: None,
+    }
+}
+
+pub(super) fn gives(field: &Field, g: &Giving) -> Gives {
+    let (id, mm) = (|p: PartIx| field.asm.part(p).id.clone(), field.asm.mm_per_unit);
+    let past = g.past.iter().map(|&(p, depth)| Past { part: id(p), depth_mm: depth * mm });
+    Gives {
+        part: id(g.part),
+        direction: g.along.to_array(),
+        past: past.collect(),
+        depth_mm: g.past.iter().map(|p| p.1).fold(0.0, f64::max) * mm,
+        strain: g.strain,
+        rest: g.rest,
+    }
 }
 
 fn ids(field: &Field, set: &Set) -> Vec<String> {

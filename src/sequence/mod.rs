@@ -1,9 +1,10 @@
-//! Takes an assembly with its contact patches, gives a plan: straight moves of single parts and groups that take it
-//! apart, or the sets that stayed together, with a proof that they are locked where the caller has one.
+//! Takes an assembly with its contact patches, gives a plan: motions of single parts and groups that take it apart, or
+//! the sets that stayed together, with a proof that they are locked where the caller has one.
 //!
-//! Sound: every move is swept along its whole way, up to the stated touching depth. Complete only for what it looks
-//! for: a set leaves by *one* straight move to infinity while the rest stands still. A plan that needs a turn, or a move
-//! that stops half way, is not found, and the answer is then `not-found`, never "there is none".
+//! Sound: every move is swept along its whole way, up to the stated touching depth. Complete only for sets that leave by
+//! *one* straight move to infinity while the rest stands still. Where that fails, [`Motions::Any`] searches straight
+//! moves that stop half way, turns and joint motions, with counted work; what is not found then is `not-found`, never
+//! "there is none".
 //!
 //! Once a set is clear it is taken off the table: later moves are checked against the parts that it was planned with,
 //! not against those that left before.
@@ -12,16 +13,19 @@ mod answer;
 pub mod clearance;
 pub mod field;
 mod gap;
+mod give;
 pub mod group;
+mod journey;
 pub mod lattice;
 pub mod leave;
 mod motion;
 mod singles;
 
-pub use answer::{Order, Outcome, Plan, Searched, Step, Straight, Stuck};
+pub use answer::{Gives, Order, Outcome, Past, Plan, Reached, Searched, Step, Straight, Stuck};
 pub use motion::{Ends, Motion, Mover, Rigid, Screw, Shift};
 
 use crate::assembly::{Assembly, PartIx};
+use crate::blocking::Touch;
 use crate::contact::Patch;
 use field::{Field, Set};
 use glam::DVec3;
@@ -49,21 +53,110 @@ pub fn plan<C>(
     plan_of(asm, &all, patches, locked)
 }
 
-/// A plan for some of the parts; the others are not there.
+/// A plan by straight moves for some of the parts; the others are not there.
 pub fn plan_of<C>(
     asm: &Assembly,
     parts: &[PartIx],
     patches: &[Patch],
     locked: impl Fn(&[PartIx]) -> Option<C>,
 ) -> Result<Plan<C>, Fault> {
+    plan_by(asm, parts, patches, Motions::Straight, locked)
+}
+
+/// Which motions a plan may use.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Motions {
+    /// One straight move for each set that leaves.
+    Straight,
+    /// Where those fail also straight moves that stop half way, turns, and several parts at once.
+    Any,
+}
+
+/// A plan for some of the parts by these motions; the others are not there.
+pub fn plan_by<C>(
+    asm: &Assembly,
+    parts: &[PartIx],
+    patches: &[Patch],
+    motions: Motions,
+    locked: impl Fn(&[PartIx]) -> Option<C>,
+) -> Result<Plan<C>, Fault> {
     sane(asm, parts)?;
+    let mut found = Told { steps: vec![], stuck: vec![], searched: Searched::default() };
+    solve(asm, parts.iter().copied().collect(), patches, motions, &locked, &mut found);
+    let Told { steps, stuck, searched } = found;
+    let outcome = match () {
+        _ if stuck.is_empty() => Outcome::Assembled,
+        _ if stuck.iter().any(|s| s.lock.is_some()) => Outcome::NeedsFlexible,
+        _ => Outcome::NotFound,
+    };
+    let touch = Touch::of(asm).depth();
+    Ok(Plan { outcome, order: Order::Disassembly, steps, stuck, searched, touch, counted: None })
+}
+
+/// A plan in the making.
+struct Told<C> {
+    steps: Vec<Step>,
+    stuck: Vec<Stuck<C>>,
+    searched: Searched,
+}
+
+/// Takes a set apart by straight moves, and each set that stays together by a way out, as it then stands.
+fn solve<C>(
+    asm: &Assembly,
+    set: Set,
+    patches: &[Patch],
+    motions: Motions,
+    locked: &dyn Fn(&[PartIx]) -> Option<C>,
+    told: &mut Told<C>,
+) {
     let field = Field::new(asm, patches);
     let mut work = Work::new(&field);
-    let mut sets = vec![parts.iter().copied().collect::<Set>()];
+    let mut sets = vec![set];
     while let Some(set) = sets.pop() {
         sets.extend(work.take_apart(set));
+        told.steps.extend(work.moves.drain(..).map(|m| answer::step(&field, &m)));
+        for (set, straight) in std::mem::take(&mut work.stuck) {
+            way_out(&field, (set, straight), motions, locked, told);
+        }
     }
-    Ok(work.answer(locked))
+    told.searched.add(work.searched);
+}
+
+/// A set that stays together: proven locked, led out by other motions, or stuck.
+fn way_out<C>(
+    field: &Field,
+    (set, straight): (Set, Straight),
+    motions: Motions,
+    locked: &dyn Fn(&[PartIx]) -> Option<C>,
+    told: &mut Told<C>,
+) {
+    let parts: Vec<PartIx> = set.iter().copied().collect();
+    let lock = locked(&parts);
+    if lock.is_some() || motions == Motions::Straight {
+        let ask = lock.is_some() && motions == Motions::Any;
+        let gives = if ask { give::give(field, &set) } else { None };
+        told.stuck.push(Stuck {
+            gives: gives.map(|g| answer::gives(field, &g)),
+            ..answer::stuck(field, (set, straight), lock, &[])
+        });
+        return;
+    }
+    let found = journey::journey(field.asm, &set, field.patches, field.touch);
+    told.searched.states += found.work.states;
+    told.searched.programs += found.work.programs;
+    let Some(exit) = found.exit else {
+        told.stuck.push(answer::stuck(field, (set, straight), None, &found.reached));
+        return;
+    };
+    told.steps.extend(exit.legs.iter().map(|leg| answer::leg(field, &set, leg)));
+    let stays: Set = set.difference(&exit.parts).copied().collect();
+    let there = Field::new(&exit.asm, &exit.patches);
+    let last = Move { parts: exit.parts.clone(), along: exit.along, stays: stays.clone() };
+    told.steps.push(answer::step(&there, &last));
+    for set in [exit.parts, stays] {
+        // What has moved within its set has no proof of a lock about the places in the file.
+        solve(&exit.asm, set, &exit.patches, motions, &|_| None, told);
+    }
 }
 
 fn sane(asm: &Assembly, parts: &[PartIx]) -> Result<(), Fault> {
@@ -147,26 +240,5 @@ impl<'f, 'a> Work<'f, 'a> {
         }
         self.moves.push(Move { parts, along, stays: stays.clone() });
         stays
-    }
-
-    fn answer<C>(self, locked: impl Fn(&[PartIx]) -> Option<C>) -> Plan<C> {
-        let field = self.field;
-        let steps = self.moves.iter().map(|m| answer::step(field, m)).collect();
-        let stuck: Vec<Stuck<C>> = self.stuck.into_iter().map(|s| answer::stuck(field, s, &locked)).collect();
-        let outcome = match () {
-            _ if stuck.is_empty() => Outcome::Assembled,
-            _ if stuck.iter().any(|s| s.lock.is_some()) => Outcome::NeedsFlexible,
-            _ => Outcome::NotFound,
-        };
-        let touch = field.touch.depth();
-        Plan {
-            outcome,
-            order: Order::Disassembly,
-            steps,
-            stuck,
-            searched: self.searched,
-            touch,
-            counted: None,
-        }
     }
 }

@@ -115,22 +115,19 @@ pub fn held((mut asm, patches): (Assembly, Vec<Patch>), part: usize) -> Made {
     (asm, patches)
 }
 
-/// A hook on a rail under a ceiling: too low to be lifted off, it must be swung out about the rail.
+/// A cover with a tab under an overhang at one end and a wall at the other: it can neither be lifted nor pulled, but it
+/// can be swung up about its tab and then drawn out.
 pub fn hook() -> Made {
     let bar = |x0: f64, x1: f64, z0: f64, z1: f64| cuboid([x0, 0., z0], [x1, 1., z1]);
-    let wall = vec![
-        bar(-1.0, -0.5, -4., 4.),
-        bar(-0.5, 0.5, -0.5, 0.),
-        bar(0.3, 0.5, 0., 0.4),
-        bar(-0.5, 1.2, 0.75, 1.),
-        cuboid([-1., -1., -4.], [4., 0., 4.]),
-        cuboid([-1., 1., -4.], [4., 2., 4.]),
+    let case = vec![
+        bar(-1.0, -0.6, -0.6, 0.6),
+        bar(-0.6, 0., 0.3, 0.6),
+        bar(-0.6, 0.3, -0.6, -0.3),
+        bar(0.3, 4., -0.6, 0.),
+        bar(4., 4.5, -0.6, 0.5),
+        cuboid([-1., -1., -0.6], [4.5, 0., 4.]),
+        cuboid([-1., 1., -0.6], [4.5, 2., 4.]),
     ];
-    let hook = vec![
-        bar(-0.1, 0.28, 0., 0.2),
-        bar(-0.1, 0.9, 0.42, 0.6),
-        bar(-0.1, 0.1, 0.2, 0.42),
-        bar(0.7, 0.9, -2., 0.42),
-    ];
-    held(assembly(vec![("hook", hook), ("wall", wall)]), 1)
+    let cover = vec![bar(0.05, 3.95, 0., 0.2), bar(-0.45, 0.05, 0., 0.2)];
+    held(assembly(vec![("cover", cover), ("case", case)]), 1)
 }

@@ -85,7 +85,7 @@ pub fn plan<C>(
         order: Order::Disassembly,
         steps: steps(asked.asm, asked.parts, &found),
         stuck,
-        searched: Searched { sets: found.apart.whole.sets(), directions: AXES },
+        searched: Searched { sets: found.apart.whole.sets(), directions: AXES, ..Searched::default() },
         touch: Touch::of(asked.asm).depth(),
         counted: Some(counted(asked, &found)),
     })
@@ -125,7 +125,13 @@ fn stuck<C>(
 ) -> Stuck<C> {
     let parts: Vec<PartIx> = set.iter().map(|&k| asked.parts[k]).collect();
     let straight_moves = if kept == Kept::Exhausted { Straight::None } else { Straight::Unknown };
-    Stuck { parts: ids(asked, set), straight_moves, lock: locked(&parts) }
+    Stuck {
+        parts: ids(asked, set),
+        straight_moves,
+        lock: locked(&parts),
+        gives: None,
+        reached: Vec::new(),
+    }
 }
 
 /// Where pieces stand while a plan is told: after a parting all goes on from before it.
