@@ -34,10 +34,7 @@ pub fn settled(solid: &Solid) -> Option<(Mesh, f64)> {
     let united = details(&whole).map(|size| (mended(snapped(&solid.plain(size).mesh()), size), size));
     let mut closed = None;
     for (mesh, size) in as_it_is.chain(united).filter(|(mesh, _)| mesh.closure() == Closure::Closed) {
-        if !same(solid, &mesh, size) {
-            continue;
-        }
-        if plain(&mesh) {
+        if plain(&mesh) && same(solid, &mesh, size) {
             return Some((mesh, size));
         }
         closed.get_or_insert((mesh, size));

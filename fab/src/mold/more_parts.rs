@@ -118,7 +118,7 @@ fn built(candidate: Candidate, spec: &MoldSpec) -> Result<Result<Mold, String>, 
     }
     assign(&mut mold, &cored.cores);
     told(&mut mold, &cored);
-    two_part::finish(mold, &cored.filled, &below, &tools).map(Ok)
+    two_part::finish(mold, &cored.filled, &tools).map(Ok)
 }
 
 /// A half in one body: crumbs within what the cavity may be off are left away; more than that, in mm3, is too much.

@@ -37,20 +37,24 @@ pub fn mold(part: &Mesh, ready: Ready, spec: &MoldSpec) -> Result<Mold, MoldErro
     for (name, half, pull) in rigid::halves(cavity, &below, &mold.plan, &tools)? {
         push(&mut mold, name, Kind::Half, &half, pull, 1);
     }
-    finish(mold, cavity, &below, &tools)
+    finish(mold, cavity, &tools)
 }
 
-/// Everything below the parting surface, its steps with draft.
+/// How much wider the steps of the file for OpenSCAD are, mm: so that two that meet in an edge overlap.
+const FAT: f64 = 0.02;
+
+/// Everything below the parting surface.
 pub fn below(mold: &Mold, cavity: &Solid, ready: &Ready) -> Result<Solid, NotSolid> {
-    let tan = mold.figures.draft.value.to_radians().tan();
-    parting::below((mold.plan.low, mold.plan.high), cavity, &ready.plane, ready.framed.snap, tan)
+    parting::below((mold.plan.low, mold.plan.high), cavity, &ready.plane, ready.framed.snap, 0.0)
 }
 
 /// The rest of a rigid mold that has its pieces: sources, volumes, steps, pictures.
-pub fn finish(mut mold: Mold, cavity: &Solid, below: &Solid, tools: &Tools) -> Result<Mold, MoldError> {
+pub fn finish(mut mold: Mold, cavity: &Solid, tools: &Tools) -> Result<Mold, MoldError> {
     mold.pieces.push(source("part", Kind::Part, &mold.part));
-    if matches!(mold.parting, Some(Parting::Stepped { .. })) {
-        push(&mut mold, "below", Kind::Below, below, DVec3::ZERO, 0);
+    if let Some(Parting::Stepped { height_mm, off_mm2 }) = mold.parting {
+        let plane = parting::Plane { height: height_mm, wrong: off_mm2 };
+        let file = parting::below((mold.plan.low, mold.plan.high), cavity, &plane, mold.snap, FAT)?;
+        push(&mut mold, "below", Kind::Below, &file, DVec3::ZERO, 0);
     }
     mold.findings.extend(draft_finding(&mold));
     mold.extras.push(pictures::maps(&mold));
