@@ -89,7 +89,7 @@ pub fn glb(asm: &Assembly, moves: &[Move]) -> Vec<u8> {
     let rest: Vec<DAffine3> =
         asm.parts.iter().map(|p| node_pose(&p.pose, shapes[p.solid].centre, middle)).collect();
     let nodes = nodes(asm, &rest, &mesh_of, middle);
-    let animation = animation(&mut file, asm, moves, &rest, middle);
+    let animation = animation(&mut file, moves, &rest, middle);
     let mut root = json!({
         "asset": {"version": "2.0", "generator": format!("weavelock {}", env!("CARGO_PKG_VERSION"))},
         "scene": 0,
@@ -248,23 +248,17 @@ fn times(moves: &[Move], part: usize) -> Vec<f64> {
     times
 }
 
-fn animation(
-    file: &mut File,
-    asm: &Assembly,
-    moves: &[Move],
-    rest: &[DAffine3],
-    middle: DVec3,
-) -> Option<Value> {
+fn animation(file: &mut File, moves: &[Move], rest: &[DAffine3], middle: DVec3) -> Option<Value> {
     let (mut samplers, mut channels) = (Vec::new(), Vec::new());
     let about = |d: DAffine3| DAffine3::from_translation(-middle) * d * DAffine3::from_translation(middle);
-    for part in 0..asm.parts.len() {
+    for (part, place) in rest.iter().enumerate() {
         let own: Vec<Move> = moves.iter().map(|m| only(m, part)).collect();
         let keys = times(moves, part);
         if keys.len() <= 2 && own.iter().all(|m| m.movers.is_empty()) {
             continue;
         }
         let poses: Vec<DAffine3> =
-            keys.iter().map(|t| about(displacements(&own, 1, *t)[0]) * rest[part]).collect();
+            keys.iter().map(|t| about(displacements(&own, 1, *t)[0]) * *place).collect();
         let input = file.floats(&keys.iter().map(|t| [*t]).collect::<Vec<_>>(), "SCALAR", None, true);
         let shifts: Vec<[f64; 3]> = poses.iter().map(|p| p.translation.to_array()).collect();
         let shifts = file.floats(&shifts, "VEC3", None, false);
