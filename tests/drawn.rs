@@ -142,9 +142,10 @@ fn numbers(root: &Value, buffer: &[u8], accessor: usize) -> Vec<f32> {
         .collect();
     for (name, pick) in [("min", f32::min as fn(f32, f32) -> f32), ("max", f32::max)] {
         if let Some(bound) = a[name].as_array() {
-            for (d, bound) in bound.iter().enumerate().take(width) {
+            assert_eq!(bound.len(), width);
+            for (d, stated) in bound.iter().enumerate() {
                 let found = read.iter().skip(d).step_by(width).copied().reduce(pick).expect("a row");
-                assert_eq!(bound.as_f64().map(|x| x as f32), Some(found), "{name}");
+                assert_eq!(stated.as_f64().map(|x| x as f32), Some(found), "{name}");
             }
         }
     }

@@ -251,14 +251,14 @@ fn times(moves: &[Move], part: usize) -> Vec<f64> {
 fn animation(file: &mut File, moves: &[Move], rest: &[DAffine3], middle: DVec3) -> Option<Value> {
     let (mut samplers, mut channels) = (Vec::new(), Vec::new());
     let about = |d: DAffine3| DAffine3::from_translation(-middle) * d * DAffine3::from_translation(middle);
-    for (part, &placed) in rest.iter().enumerate() {
+    for (part, place) in rest.iter().enumerate() {
         let own: Vec<Move> = moves.iter().map(|m| only(m, part)).collect();
         let keys = times(moves, part);
         if keys.len() <= 2 && own.iter().all(|m| m.movers.is_empty()) {
             continue;
         }
         let poses: Vec<DAffine3> =
-            keys.iter().map(|t| about(displacements(&own, 1, *t)[0]) * placed).collect();
+            keys.iter().map(|t| about(displacements(&own, 1, *t)[0]) * *place).collect();
         let input = file.floats(&keys.iter().map(|t| [*t]).collect::<Vec<_>>(), "SCALAR", None, true);
         let shifts: Vec<[f64; 3]> = poses.iter().map(|p| p.translation.to_array()).collect();
         let shifts = file.floats(&shifts, "VEC3", None, false);
