@@ -2,14 +2,14 @@
 //!
 //! `cargo bench --bench verdicts -- FOLDER NAME...`; a name is `window-N`, `tiles-N` (doubled plain tiles) or
 //! `unit-ABC-N`, with N wefts and N warps, `roof` or `bunny` (other people's assemblies, where they are), or a spec
-//! file. Prints one JSON object a line.
+//! file. Prints one JSON object a line. After `--reductions` also the times without the reductions of rows.
 
 use std::io::{BufWriter, Write};
 use std::path::Path;
 use std::time::Instant;
 use weavelock::assembly::PartIx;
 use weavelock::contact::join;
-use weavelock::locking::{Freedom, Row, Unknowns, check, decide, rows};
+use weavelock::locking::{Freedom, Row, Start, Unknowns, check, decide_from, rows};
 use weavelock::spec::{Spec, Syntax, parse};
 
 type Fallible<T> = Result<T, Box<dyn std::error::Error>>;
@@ -20,8 +20,12 @@ fn main() -> Fallible<()> {
         eprintln!("usage: cargo bench --bench verdicts -- FOLDER NAME...");
         return Ok(());
     };
+    let mut reductions = Reductions::One;
     for name in words {
-        println!("{}", timed(Path::new(&folder), &name)?);
+        match name.as_str() {
+            "--reductions" => reductions = Reductions::Each,
+            name => println!("{}", timed(Path::new(&folder), name, reductions)?),
+        }
     }
     Ok(())
 }
@@ -68,7 +72,7 @@ fn meshes(case: &str, held: &[&str]) -> Fallible<Spec> {
     Ok(parse(&text, &folder.join("bench.toml"), Syntax::Toml)?)
 }
 
-fn timed(folder: &Path, name: &str) -> Fallible<String> {
+fn timed(folder: &Path, name: &str, reductions: Reductions) -> Fallible<String> {
     let start = Instant::now();
     let joined = join(&spec(name)?)?;
     let contacts = start.elapsed().as_secs_f64();
@@ -78,27 +82,45 @@ fn timed(folder: &Path, name: &str) -> Fallible<String> {
     let still: Vec<PartIx> = both.held.iter().copied().chain(both.fixed).collect();
     let rows = rows(&joined.patches, Freedom::Rigid);
     let unknowns = Unknowns::new(&joined.assembly, &rows, &still, Freedom::Rigid);
+    let (word, time, processor) = decided(&rows, &unknowns, Start::Farthest);
+    let without = [Start::Outlines, Start::FarthestOfAll, Start::All].map(|s| match reductions {
+        Reductions::One => "null".to_string(),
+        Reductions::Each => format!("{:.6}", decided(&rows, &unknowns, s).2),
+    });
+    write_rows(&folder.join(format!("{}.rows", name.replace('/', "_"))), &rows, &unknowns)?;
+    Ok(format!(
+        "{{\"name\": \"{name}\", \"parts\": {}, \"rows\": {}, \"unknowns\": {}, \"verdict\": \"{word}\", \
+         \"contacts_s\": {contacts:.6}, \"check_s\": {check:.6}, \"decide_s\": {time:.6}, \
+         \"decide_cpu_s\": {processor:.6}, \"outlines_cpu_s\": {}, \"farthest_cpu_s\": {}, \"all_cpu_s\": {}}}",
+        joined.assembly.parts.len(),
+        rows.len(),
+        unknowns.count,
+        without[0],
+        without[1],
+        without[2]
+    ))
+}
+
+/// Word, time and processor time of a verdict: medians.
+fn decided(rows: &[Row], unknowns: &Unknowns, from: Start) -> (&'static str, f64, f64) {
     let (mut times, mut processor) = (Vec::new(), Vec::new());
     let mut word = "";
     while times.iter().sum::<f64>() < ENOUGH && times.len() < MOST_RUNS {
         let (start, busy) = (Instant::now(), processor_seconds());
-        word = decide(&rows, &unknowns).word();
+        word = decide_from(rows, unknowns, from).word();
         times.push(start.elapsed().as_secs_f64());
         processor.push(processor_seconds() - busy);
     }
     times.sort_by(f64::total_cmp);
     processor.sort_by(f64::total_cmp);
-    write_rows(&folder.join(format!("{}.rows", name.replace('/', "_"))), &rows, &unknowns)?;
-    Ok(format!(
-        "{{\"name\": \"{name}\", \"parts\": {}, \"rows\": {}, \"unknowns\": {}, \"verdict\": \"{word}\", \
-         \"contacts_s\": {contacts:.6}, \"check_s\": {check:.6}, \"decide_s\": {:.6}, \
-         \"decide_cpu_s\": {:.6}}}",
-        joined.assembly.parts.len(),
-        rows.len(),
-        unknowns.count,
-        times[times.len() / 2],
-        processor[processor.len() / 2]
-    ))
+    (word, times[times.len() / 2], processor[processor.len() / 2])
+}
+
+/// Which starts of the verdict are timed.
+#[derive(Clone, Copy)]
+enum Reductions {
+    One,
+    Each,
 }
 
 /// Processor time of all threads so far, as Linux counts it (nanoseconds); NaN elsewhere.

@@ -11,12 +11,20 @@ use std::path::Path;
 /// Largest spec, draft or WIF, in bytes (4 MiB): 512 x 512 crossings drawn in a file take a sixteenth of it.
 pub const MAX_BYTES: u64 = 4 << 20;
 
+/// Largest puzzle file, packed or not, in bytes (64 MiB): as many as one may unpack to.
+pub const MAX_PUZZLE_BYTES: u64 = 64 << 20;
+
 /// Largest answer that is read back, in bytes (1 GiB): a lock of a million contact forces takes a quarter of it.
 pub const MAX_ANSWER_BYTES: u64 = 1 << 30;
 
 /// The bytes of the file, which must be a regular file, not empty, of at most [`MAX_BYTES`].
 pub fn bytes(path: &Path) -> Result<Vec<u8>, Faults> {
     up_to(path, MAX_BYTES)
+}
+
+/// The bytes of a puzzle's file, of at most [`MAX_PUZZLE_BYTES`].
+pub fn packed_bytes(path: &Path) -> Result<Vec<u8>, Faults> {
+    up_to(path, MAX_PUZZLE_BYTES)
 }
 
 /// The bytes of an answer's file, of at most [`MAX_ANSWER_BYTES`].

@@ -3,7 +3,7 @@
 //! The flow, one way:
 //!
 //! ```text
-//! weave -> profile -> sites -> tile -> assembly -> contact -> { blocking, locking, sequence, sampling, repeats, flex, chirality } -> fab -> report
+//! weave -> profile -> sites -> tile -> assembly -> contact -> { blocking, locking, cores, sequence, sampling, repeats, flex, chirality } -> fab -> report
 //! ```
 
 pub mod assembly;
@@ -12,6 +12,7 @@ pub mod blocking;
 pub mod chirality;
 pub mod cli;
 pub mod contact;
+pub mod cores;
 pub mod fabricate;
 pub mod fault;
 pub mod flex;
@@ -19,7 +20,9 @@ pub mod input;
 pub mod interlock;
 pub mod locking;
 pub mod made;
+pub mod play;
 pub mod profile;
+pub mod release;
 pub mod repeats;
 pub mod report;
 pub mod sampling;

@@ -64,6 +64,16 @@ impl Solid {
             .sum()
     }
 
+    /// Area of all facets, in squared model units.
+    pub fn surface(&self) -> f64 {
+        self.triangles()
+            .map(|[a, b, c]| {
+                let [a, b, c] = [a, b, c].map(|i| self.vertices[i as usize]);
+                (b - a).cross(c - a).length() / 2.0
+            })
+            .sum()
+    }
+
     /// The facets as triangle fans, each from its lowest-numbered corner (the same for the same solid).
     pub fn triangles(&self) -> impl Iterator<Item = [u32; 3]> + '_ {
         self.facets.iter().flat_map(|f| {

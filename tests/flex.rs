@@ -4,8 +4,8 @@ use crate::support::{joined, ran, tiles, verified, window};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 use weavelock::contact::Joined;
-use weavelock::flex::cores::Contacts;
-use weavelock::flex::{Ask, Flex, Listing, Set, Wanted, flex};
+use weavelock::cores::{self, Contacts, Guard, Set};
+use weavelock::flex::{Ask, Flex, Listing, Wanted, flex};
 use weavelock::report::answer::{Sealed, checksum};
 
 /// Far below the size of a facet, far above the round-off of vertices.
@@ -15,7 +15,7 @@ const ASK: Ask =
     Ask { clearance: 0.0, wanted: Wanted::Smallest, work: 1_000_000, until: None, within: WITHIN };
 
 fn asked(joined: &Joined, ask: &Ask) -> Flex {
-    flex(&joined.assembly, &joined.patches, ask).expect("cells")
+    flex(joined.touching(), ask).expect("cells")
 }
 
 fn names(joined: &Joined, set: &Set) -> Vec<String> {
@@ -91,17 +91,17 @@ fn minimal_sets_hold_no_smaller_one() {
 #[test]
 fn cores_are_locked_and_minimal() {
     let joined = joined(&window([1, 1, 1], 6, 3, 3));
-    let mut contacts = Contacts::new(&joined.assembly, &joined.patches);
+    let contacts = Contacts::new(joined.touching());
     let all: Set = joined.assembly.ids().collect();
-    let largest = contacts.largest(&all);
+    let largest = cores::largest(&contacts, &all, Guard::With).largest;
     assert_eq!(largest.len(), 1, "the whole window is locked");
     assert_eq!(largest[0].parts, all);
-    let core = contacts.least(largest[0].clone());
+    let core = cores::least(&contacts, largest[0].clone());
     assert_eq!(core.parts.len(), 4, "{:?}", names(&joined, &core.parts));
-    assert_eq!(contacts.decide(&core.parts).word(), "locked");
+    assert!(cores::locked(&contacts, &core.parts).is_some());
     for p in &core.parts {
         let less: Set = core.parts.iter().copied().filter(|q| q != p).collect();
-        assert!(contacts.largest(&less).is_empty());
+        assert!(cores::largest(&contacts, &less, Guard::Without).largest.is_empty());
     }
 }
 
@@ -119,8 +119,8 @@ fn the_largest_locked_sets_are_disjoint() {
     };
     let text = crate::support::woven([1, 1, 1], 6, &pieces(0).chain(pieces(4)).collect::<String>());
     let joined = joined(&text);
-    let mut contacts = Contacts::new(&joined.assembly, &joined.patches);
-    let found = contacts.largest(&joined.assembly.ids().collect());
+    let contacts = Contacts::new(joined.touching());
+    let found = cores::largest(&contacts, &joined.assembly.ids().collect(), Guard::With).largest;
     assert_eq!(found.iter().map(|c| c.parts.len()).collect::<Vec<_>>(), [4, 4]);
     assert!(found[0].parts.is_disjoint(&found[1].parts));
     assert_eq!(asked(&joined, &ASK).minimum(), Some(2));
@@ -208,4 +208,28 @@ fn words_for_a_maker_and_bad_flags() {
     let said = String::from_utf8_lossy(&out.stderr).into_owned();
     assert_eq!(out.status.code(), Some(2), "{said}");
     assert!(said.contains("nothing is left"), "{said}");
+}
+
+/// Other people's roof: locked with its boundary held, and one flexible part is enough.
+#[test]
+#[ignore = "slow: 62 parts, some ten seconds"]
+fn the_roof_needs_one() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/cases/topolite/roof");
+    let Ok(all) = std::fs::read_dir(&folder) else {
+        println!("skipped: no {}", folder.display());
+        return;
+    };
+    let mut files: Vec<PathBuf> = all.map(|e| e.expect("an entry").path()).collect();
+    files.retain(|f| f.extension().is_some_and(|e| e == "obj"));
+    files.sort();
+    let mut text =
+        "name = \"roof\"\n[contact]\ntolerance = \"0.001 mm\"\n[size]\nunit = \"mm\"\n".to_string();
+    for f in files {
+        let held = f.file_stem().is_some_and(|s| s == "Boundary");
+        text += &format!("[[part]]\nmesh = {:?}\nheld = {held}\n", f.display().to_string());
+    }
+    let answer = json(&written("roof", &text), &["--work", "1000000"]);
+    assert_eq!(answer["minimum"], 1, "{} to {}", answer["lower_bound"], answer["upper_bound"]);
+    let found = verified(&answer);
+    assert!(found.valid, "{}", found.why);
 }

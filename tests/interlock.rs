@@ -8,16 +8,17 @@ use crate::support::{Dice, source};
 use std::collections::BTreeSet;
 use std::path::Path;
 use weavelock::assembly::{Assembly, PartIx};
-use weavelock::contact::{Joined, Patch, join};
+use weavelock::contact::{Joined, Patch, Touching, join};
+use weavelock::cores::Set;
 use weavelock::interlock::keys::{Complete, Least};
-use weavelock::interlock::{Interlock, Set, Whole, interlock};
+use weavelock::interlock::{Interlock, Whole, interlock};
 use weavelock::locking::{Verdict, check};
 use weavelock::report::answer::{self, CheckAnswer, InterlockWord, Sealed};
 use weavelock::spec::{Syntax, parse};
 use weavelock::verify;
 
 fn found(asm: &Assembly, patches: &[Patch]) -> Interlock {
-    interlock(asm, patches, &check(asm, patches, None))
+    interlock(Touching::exactly(asm, patches), &check(asm, patches, None))
 }
 
 /// All sets of parts, small ones first.
@@ -80,7 +81,7 @@ fn compare(made: &Made, about: &str, tally: &mut Tally) {
     assert_eq!(own, keys, "{about}: keys of {made:?}");
     assert_eq!(found.keys.complete, Complete::All, "{about}");
     assert!(found.keys.found.iter().all(|k| k.least == Least::Shown), "{about}");
-    let own: BTreeSet<Set> = found.cores.largest.iter().map(|c| c.parts.clone()).collect();
+    let own: BTreeSet<Set> = found.cores.found.largest.iter().map(|c| c.parts.clone()).collect();
     assert_eq!(own, cores, "{about}: cores of {made:?}");
     let word = match &found.whole {
         Whole::AsChecked => check(asm, patches, None).rigid.word(),
@@ -135,7 +136,7 @@ fn answered(name: &str) -> CheckAnswer {
     let (file, joined) = fixture(name);
     let text = std::fs::read_to_string(&file).expect("a fixture");
     let check = check(&joined.assembly, &joined.patches, None);
-    let found = interlock(&joined.assembly, &joined.patches, &check);
+    let found = interlock(joined.touching(), &check);
     let written = answer::interlock(&joined.assembly, &check, &found);
     answer::with_interlock(answer::check(&joined, &check, source(&file, &text)), written)
 }
@@ -269,5 +270,5 @@ fn the_bunny_has_one_key() {
     let found = found(&joined.assembly, &joined.patches);
     assert!(matches!(check(&joined.assembly, &joined.patches, None).rigid, Verdict::Free(_)));
     assert!(found.keys.found.iter().any(|k| k.parts == Set::from([PartIx(0)])));
-    assert!(found.cores.largest.is_empty());
+    assert!(found.cores.found.largest.is_empty());
 }

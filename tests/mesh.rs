@@ -2,6 +2,7 @@
 //! may break, and files and overlaps that must be refused.
 
 mod files;
+mod firm;
 mod fixed;
 mod kept;
 mod made;

@@ -159,13 +159,61 @@ fn a_plate_that_waves_is_parted_by_steps_and_leaves() {
     sound(&measured(&mold));
 }
 
+/// A bobbin of 24 mm with flanges of 30 mm and a hole along its axis.
+fn bobbin() -> Mesh {
+    let disc = |z: f64, h: f64, r: f64| solid(&frustum(DVec3::Z * z, h, r, r));
+    let body = Solid::all(vec![disc(0.0, 3.0, 15.0), disc(0.0, 24.0, 7.0), disc(21.0, 3.0, 15.0)]);
+    body.minus(&disc(-1.0, 26.0, 4.0)).mesh()
+}
+
+/// A bracket with a hole in each leg and a blind pocket in its back.
+fn bracket() -> Mesh {
+    let foot = solid(&cuboid(DVec3::ZERO, DVec3::new(40.0, 30.0, 6.0)));
+    let leg = solid(&cuboid(DVec3::ZERO, DVec3::new(6.0, 30.0, 35.0)));
+    let drill = frustum(DVec3::new(20.0, 15.0, -1.0), 9.0, 4.0, 4.0);
+    let across = frustum(DVec3::new(-22.0, 15.0, -1.0), 9.0, 4.0, 4.0).map(|v| DVec3::new(v.z, v.y, -v.x));
+    let pocket = cuboid(DVec3::new(-1.0, 10.0, 10.0), DVec3::new(2.0, 20.0, 14.0));
+    foot.with(&leg).minus(&Solid::all(vec![solid(&drill), solid(&across), solid(&pocket)])).mesh()
+}
+
+/// A cube with a chamber that only a narrow neck leads to.
+fn bottle() -> Mesh {
+    let cube = solid(&cuboid(DVec3::ZERO, DVec3::splat(30.0)));
+    let chamber = solid(&cuboid(DVec3::splat(6.0), DVec3::splat(24.0)));
+    cube.minus(&chamber.with(&solid(&frustum(DVec3::new(15.0, 15.0, 20.0), 12.0, 3.0, 3.0)))).mesh()
+}
+
+#[test]
+fn what_no_one_pull_frees_gets_side_cores_that_leave_first() {
+    for (name, part, most) in [("bobbin", bobbin(), 1), ("bracket", bracket(), 2), ("holed", holed(), 2)] {
+        let mold = make(&part, &spec(name, Route::Rigid)).unwrap();
+        let cores = mold.pieces.iter().filter(|p| p.kind == Kind::Core).count();
+        assert!((1..=most).contains(&cores), "{name}: {cores} cores; {:#?}", mold.findings);
+        assert!(mold.maps.half.iter().any(|h| h == "core-1"), "{name}");
+        assert!(mold.steps.iter().any(|s| s.does.contains("core-1 along")), "{name}: {:?}", mold.steps);
+        let report = measured(&mold);
+        assert!(report.measured.iter().any(|m| m.of.starts_with("core-1 leaves the rest")), "{name}");
+        sound(&report);
+    }
+}
+
+/// A core that is turned about does not leave, and the measurements say so.
+#[test]
+fn a_core_that_is_stuck_is_found_out() {
+    let mut mold = make(&bobbin(), &spec("stuck", Route::Rigid)).unwrap();
+    let core = mold.pieces.iter_mut().find(|p| p.kind == Kind::Core).unwrap();
+    core.pull = -core.pull;
+    let missed = measured(&mold).measured.into_iter().filter(|m| !m.kept).map(|m| m.of).collect::<Vec<_>>();
+    assert!(missed.iter().any(|m| m.starts_with("core-1 leaves the rest")), "{missed:?}");
+}
+
 #[test]
 fn what_no_pull_frees_is_refused_for_a_rigid_mold_and_made_in_silicone() {
-    let rigid = make(&holed(), &spec("holed", Route::Rigid)).unwrap();
+    let rigid = make(&bottle(), &spec("bottle", Route::Rigid)).unwrap();
     assert!(rigid.pieces.is_empty() && rigid.pull.undercut_mm2 > 100.0, "{:?}", rigid.pull);
     assert!(rigid.findings.iter().any(|f| f.severity == Severity::Error && f.remedy.contains("silicone")));
     assert!(rigid.extras.iter().any(|e| e.name.ends_with(".png") && e.bytes.len() > 1000));
-    sound(&measured(&make(&holed(), &spec("holed", Route::Silicone)).unwrap()));
+    sound(&measured(&make(&bottle(), &spec("bottle", Route::Silicone)).unwrap()));
 }
 
 /// The measurements tell a mold that is wrong: a half that stands aside, and one that has lost its vents.
@@ -229,6 +277,16 @@ fn a_tree_carries_its_patterns_and_says_what_to_mix_and_melt() {
     assert!(mold.steps.iter().any(|s| s.celsius == Some(730.0) && !s.source.is_empty()));
 }
 
+/// A thick part asks for a runner that is wider than the figure: it gets it, and the modulus rises all the way.
+#[test]
+fn the_runner_grows_with_what_it_feeds() {
+    let brick = cuboid(DVec3::ZERO, DVec3::new(80.0, 60.0, 28.0));
+    let mold = make(&brick, &spec("brick", Route::LostWax)).unwrap();
+    let of = |what: &str| mold.measured.iter().find(|m| m.of.starts_with(what)).unwrap();
+    assert!(of("modulus of the runner").kept && of("modulus of the gate").kept, "{:?}", mold.measured);
+    assert!(of("diameter of the runner").value > 20.0, "{:?}", of("diameter of the runner"));
+}
+
 #[test]
 fn what_can_not_be_molded_is_refused_with_a_hint() {
     let cube = || cuboid(DVec3::ZERO, DVec3::splat(20.0));
@@ -277,6 +335,7 @@ fn the_same_part_gives_the_same_bytes() {
 fn openscad_makes_the_same_molds_from_the_sources() {
     for (name, part, route) in [
         ("scad-wavy", wavy(), Route::Rigid),
+        ("scad-bobbin", bobbin(), Route::Rigid),
         ("scad-holed", holed(), Route::Silicone),
         ("scad-tree", angle(), Route::LostWax),
     ] {

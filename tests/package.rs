@@ -320,3 +320,81 @@ fn corners_that_no_split_helps_are_given_up_and_told() {
     };
     assert!(parts.iter().all(|p| !p["file"].is_null() || told(&p["id"])), "{findings:?}");
 }
+
+/// Prints of molds lie on plates of their own, on the bed, apart from masters; what is larger than the bed is told.
+#[test]
+fn mold_prints_stand_on_plates_of_their_own() {
+    let at = room("mold-plates");
+    let make = |out: &str, more: &[&str]| {
+        let args =
+            [&["fab", &plain(), "--part", "weft-0=silicone-platinum", "--json", "-q", "--out", out], more];
+        ran(&args.concat(), &at)
+    };
+    let out = make("p", &[]);
+    let answer: Value = serde_json::from_slice(&out.stdout).expect("JSON");
+    let plates = answer["plates"].as_array().expect("plates");
+    let molds = plates.iter().find(|p| p["file"] == "print/silicone-platinum-molds-plate-1.mm.3mf");
+    let stands = molds.expect("a plate of molds")["stands"].as_array().expect("stands").len();
+    let printed = answer["molds"].as_array().expect("molds").len();
+    assert_eq!(stands, printed, "{}", said(&out));
+    let file = fs::read(at.join("p/print/silicone-platinum-molds-plate-1.mm.3mf")).expect("a plate");
+    for mesh in threemf::read(&file).expect("readable") {
+        assert!(mesh.closure() == Closure::Closed && mesh.bounds().0.min_element() >= 0.0);
+    }
+    assert!(at.join("p/pictures/silicone-platinum-molds-plate-1.png").exists());
+    let small = make("small", &["--bed", "70 x 70 x 60 mm"]);
+    assert!(said(&small).contains("cast a shorter part"), "{}", said(&small));
+}
+
+/// A run that is killed leaves a hidden folder; the next one clears it.
+#[cfg(unix)]
+#[test]
+fn what_a_killed_run_leaves_is_cleared_by_the_next() {
+    let at = room("killed");
+    let mut run = Command::new(env!("CARGO_BIN_EXE_weavelock"))
+        .args(["fab", &plain(), "--process", "wax-injected", "-q", "--out", "out"])
+        .current_dir(&at)
+        .stdout(std::process::Stdio::null())
+        .spawn()
+        .expect("starts");
+    let hidden = || names(&at).into_iter().any(|n| n.ends_with(".part"));
+    for _ in 0..3000 {
+        if hidden() {
+            break;
+        }
+        std::thread::sleep(std::time::Duration::from_millis(2));
+    }
+    let _ = run.kill();
+    let _ = run.wait();
+    if !hidden() {
+        eprintln!("not run: the package was done before it could be killed");
+        return;
+    }
+    let out = ran(&["fab", &plain(), "-q", "--out", "other"], &at);
+    assert_eq!(names(&at), ["other"], "{}", said(&out));
+}
+
+/// On a full disk nothing is left half written. Needs the right to mount.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_full_disk_leaves_nothing_half_written() {
+    let at = room("full");
+    let mounted = Command::new("mount")
+        .args(["-t", "tmpfs", "-o", "size=300k", "tmpfs"])
+        .arg(&at)
+        .output()
+        .is_ok_and(|o| o.status.success());
+    if !mounted {
+        eprintln!("not run: no right to mount a small disk");
+        return;
+    }
+    let fab = ran(&["fab", &plain(), "-q", "--out", "out"], &at);
+    let left = names(&at);
+    let run = ran(&["run", &plain(), "-q", "--out", "run"], &at);
+    let halves = files(&at).into_keys().filter(|n| n.contains(".part") || n.contains(".lock")).count();
+    let unmounted = Command::new("umount").arg(&at).status().is_ok_and(|s| s.success());
+    assert!(unmounted, "{} stays mounted", at.display());
+    assert!(fab.status.code() == Some(2) && said(&fab).contains("disk is full"), "{}", said(&fab));
+    assert!(left.is_empty(), "{left:?}");
+    assert!(run.status.code() == Some(2) && halves == 0, "{}", said(&run));
+}

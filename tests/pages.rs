@@ -41,6 +41,9 @@ fn input() -> PageInput {
         title: NASTY.into(),
         lead: NASTY.into(),
         pictures: vec![png(b"foobar"), png(b"fooba"), png(b"foob"), png(b"")],
+        exhibits: vec![],
+        blocking: given(),
+        molds: given(),
         draft: given(),
         verdict: given(),
         plan: given(),
@@ -86,6 +89,25 @@ fn a_page_stands_alone() {
         assert!(t.contains(" src=\"data:image/") && t.contains(" alt=\"&lt;script"), "{t}");
     }
     assert_eq!(html, page(&input()));
+}
+
+/// Two scripts, the data and ours, named by its hash; what a part is called can neither end the data nor add a third.
+#[test]
+fn only_the_viewer_runs_whatever_parts_are_called() {
+    let mut joined = crate::support::joined(&crate::support::window([1, 1, 1], 2, 2, 2));
+    joined.assembly.parts[0].id = format!("</script><!--<script>{NASTY}\u{2028}");
+    let exhibits = vec![weavelock::report::viewer::of_assembly(&joined, &Default::default())];
+    let html = page(&PageInput { exhibits, ..input() });
+    assert_eq!(html.matches("<script").count(), 2);
+    assert_eq!(html.matches("</script").count(), 2);
+    assert_eq!(html.matches("script-src").count(), 1);
+    assert!(html.contains(&format!("script-src &#39;{}&#39;", weavelock::report::viewer::script_hash())));
+    let data = html.split("id=\"viewer-data\">").nth(1).unwrap().split("</script>").next().unwrap();
+    let read: serde_json::Value = serde_json::from_str(data).unwrap();
+    assert_eq!(read["exhibits"][0]["ids"][0], serde_json::json!(joined.assembly.parts[0].id));
+    for word in ["http:", "https:", "fetch(", "import(", "XMLHttpRequest", "eval("] {
+        assert!(!weavelock::report::viewer::SCRIPT.contains(word), "{word}");
+    }
 }
 
 #[test]

@@ -6,7 +6,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 /// Each module of `src` and the modules that it may use. What stands in one line never uses its neighbours there.
-const FLOW: [&[&str]; 17] = [
+const FLOW: [&[&str]; 18] = [
     &["fault", "solid"],
     &["input"],
     &["weave"],
@@ -17,9 +17,10 @@ const FLOW: [&[&str]; 17] = [
     &["assembly"],
     &["contact"],
     &["blocking", "locking"],
+    &["cores"],
     &["sequence"],
     &["made"],
-    &["repeats", "flex", "chirality", "fabricate", "sampling", "interlock"],
+    &["repeats", "flex", "chirality", "fabricate", "sampling", "interlock", "play", "release"],
     &["report"],
     &["verify", "atlas"],
     &["cli"],

@@ -42,6 +42,8 @@ slot = @slot@;
 /* [Hidden] */
 $fn = @sides@;
 beyond = 1;
+// Moves what was made to meet the part in a line, mm, so that rounding does not make it touch in points.
+aside = @aside@;
 wider = [for (k = [0, 1]) max(0, (least_side - (part_high[k] - part_low[k] + 2 * rim)) / 2)];
 room = key_height + key_clearance + edge;
 low = [part_low[0] - rim - wider[0], part_low[1] - rim - wider[1], min(part_low[2] - wall, parting - room)];
@@ -71,7 +73,7 @@ module slots() {
     translate([middle[0] - key_diameter / 2 - edge - slot[0], low[1] - beyond, parting]) cube([slot[0], slot[1] + beyond, slot[2]]);
 }
 
-module below() if (below == "") box(low, [high[0], high[1], parting]); else import(below, convexity = 20);
+module below() if (below == "") box(low, [high[0], high[1], parting]); else translate(aside) import(below, convexity = 20);
 
 module lower() difference() {
     union() {

@@ -39,6 +39,20 @@ pub struct Recipe {
     pub obj: bool,
     /// Programs of others to check with; `None` checks with none.
     pub programs: Option<Programs>,
+    /// What forms the cavity of a mold.
+    pub cavity: Cavity,
+    /// Castings of a shape at once in a rigid or silicone mold; at least 1.
+    pub gang: usize,
+}
+
+/// What forms the cavity of a mold.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Cavity {
+    /// The part itself, with its clearance.
+    #[default]
+    Part,
+    /// The hollow that the parts around it leave (paper, 4.3): it reaches up to them, so the casting has no clearance.
+    Surroundings,
 }
 
 impl Recipe {
@@ -50,6 +64,8 @@ impl Recipe {
             datum: DVec3::ZERO,
             obj: true,
             programs: Some(Programs::default()),
+            cavity: Cavity::default(),
+            gang: 1,
         }
     }
 

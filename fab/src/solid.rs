@@ -100,14 +100,17 @@ impl Solid {
 
     /// The same with detail below `size` mm gone: shorter edges united, and bodies thinner than that left out.
     pub fn plain(&self, size: f64) -> Solid {
-        let whole = Solid(self.0.simplify(size));
+        Solid(self.0.simplify(size)).thick(size)
+    }
+
+    /// The same without bodies that are thinner than `size` mm all over: what round-off of a difference leaves.
+    pub fn thick(&self, size: f64) -> Solid {
         let thick = |b: &Solid| b.volume().abs() > size * b.0.surface_area();
-        let bodies = whole.bodies();
+        let bodies = self.bodies();
         if bodies.iter().all(thick) {
-            whole
-        } else {
-            Solid(Manifold::compose(&bodies.into_iter().filter(thick).map(|b| b.0).collect::<Vec<_>>()))
+            return self.clone();
         }
+        Solid(Manifold::compose(&bodies.into_iter().filter(thick).map(|b| b.0).collect::<Vec<_>>()))
     }
 
     /// Whether triangles of its surface cross: then no volume of it means anything.

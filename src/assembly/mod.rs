@@ -5,6 +5,7 @@
 pub mod layout;
 pub mod mesh;
 pub mod read;
+pub mod voxel;
 pub mod woven;
 
 use crate::solid::{Cell, Solid};

@@ -3,9 +3,10 @@
 //! Not promised: that parts touch or keep apart; `contact` finds out.
 
 use super::mesh::{MeshFault, Reading, read_mesh};
-use super::{Assembly, Part};
+use super::{Assembly, Part, voxel};
 use crate::fault::{Fault, Faults};
 use crate::solid::Solid;
+use crate::spec::puzzle::Puzzle;
 use crate::spec::{MeshPartSpec, MeshSpec, Spec};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
@@ -25,6 +26,9 @@ pub struct Read {
 /// # Errors
 /// All faults of all files.
 pub fn assembly(spec: &Spec, meshes: &MeshSpec) -> Result<Read, Faults> {
+    if let Some(puzzle) = &meshes.puzzle {
+        return of_puzzle(spec, puzzle, meshes.mm_per_unit);
+    }
     let reading =
         Reading { mm_per_unit: meshes.mm_per_unit, tolerance: meshes.tolerance_mm / meshes.mm_per_unit };
     let mut first: BTreeMap<&Path, usize> = BTreeMap::new();
@@ -58,6 +62,22 @@ pub fn assembly(spec: &Spec, meshes: &MeshSpec) -> Result<Read, Faults> {
     let resolution = parts.iter().map(|p| known[p.solid]).collect();
     let assembly = Assembly { name: spec.name.clone(), solids, parts, mm_per_unit: meshes.mm_per_unit };
     Ok(Read { assembly, resolution, remarks })
+}
+
+/// The assembly of a puzzle's solution; its corners are whole numbers.
+fn of_puzzle(spec: &Spec, puzzle: &Puzzle, mm_per_unit: f64) -> Result<Read, Faults> {
+    let fault = |what: String, hint: &str| Fault { key: String::new(), ..spec.fault("", what, hint) };
+    let Some(solution) = &puzzle.solution else {
+        let what = "the file states no solution, so it is not known where the pieces lie".to_string();
+        return Err(fault(what, "save it with a solution").into());
+    };
+    let misfits = |wrong: Vec<voxel::Misfit>| {
+        let hint = "solution and shapes do not belong together: solve the puzzle again";
+        Faults(wrong.iter().map(|m| fault(m.to_string(), hint)).collect())
+    };
+    let assembly = voxel::assembly(&spec.name, puzzle, solution, mm_per_unit).map_err(misfits)?;
+    let resolution = vec![0.0; assembly.parts.len()];
+    Ok(Read { assembly, resolution, remarks: Vec::new() })
 }
 
 /// A mesh's fault, with the line of the spec that named the file.

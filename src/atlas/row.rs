@@ -9,7 +9,7 @@ use super::weaves::{Abc, Equivalent, equivalents};
 use crate::assembly::woven;
 use crate::chirality::answer::{Handedness, WarpIs};
 use crate::chirality::{HandsError, of_weave};
-use crate::contact;
+use crate::contact::{self, Touching};
 use crate::fault::Faults;
 use crate::flex::{self, SAME_VERTEX, WORK, Wanted, flex};
 use crate::repeats::{Search, Tried, repeats};
@@ -173,7 +173,8 @@ fn flexible(weave: &Weave, ask: &Ask) -> Flexible {
     };
     let asked =
         flex::Ask { clearance: 0.0, wanted: Wanted::Smallest, work: WORK, until: None, within: SAME_VERTEX };
-    match flex(&built.assembly, &contact::woven::patches(&built), &asked) {
+    let patches = contact::woven::patches(&built);
+    match flex(Touching::exactly(&built.assembly, &patches), &asked) {
         Err(fault) => none(Status::NotRun, fault.to_string()),
         Ok(found) => {
             let (minimum, lower, upper) = (found.minimum(), found.lower, found.upper);

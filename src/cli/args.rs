@@ -7,7 +7,7 @@
     reason = "these texts are help for a terminal; brackets are no links"
 )]
 
-use clap::{Args as ClapArgs, Parser, Subcommand, ValueEnum};
+use clap::{Args as ClapArgs, Parser, Subcommand};
 use std::path::PathBuf;
 
 /// Decides whether an assembly of solid parts locks, proves it, plans how it goes together, makes its parts.
@@ -34,6 +34,29 @@ pub struct Common {
     /// Threads to use (default: one for each core); answers do not depend on it
     #[arg(long, global = true, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub threads: Option<u16>,
+    #[command(flatten)]
+    pub puzzle: PuzzleArgs,
+}
+
+/// What is asked about in a puzzle file of BurrTools, which every verb takes that takes a file.
+#[derive(ClapArgs, Debug, Clone, Default)]
+pub struct PuzzleArgs {
+    /// Of a puzzle file: the problem asked about, from 1 (default: the first with a solution): `--problem 2`
+    #[arg(long, global = true, value_name = "N", help_heading = "Puzzle files", value_parser = counted)]
+    pub problem: Option<usize>,
+    /// Of a puzzle file: the stated solution asked about, from 1 (default: the first): `--solution 3`
+    #[arg(long, global = true, value_name = "N", help_heading = "Puzzle files", value_parser = counted)]
+    pub solution: Option<usize>,
+    /// Of a puzzle file: edge of a voxel (default: 1 mm): `--unit "10 mm"`
+    #[arg(long, global = true, value_name = "LENGTH", help_heading = "Puzzle files", value_parser = edge)]
+    pub unit: Option<f64>,
+}
+
+impl PuzzleArgs {
+    /// Whether anything was said.
+    pub fn some(&self) -> Option<&PuzzleArgs> {
+        (self.problem.is_some() || self.solution.is_some() || self.unit.is_some()).then_some(self)
+    }
 }
 
 #[derive(Subcommand, Debug)]
@@ -64,6 +87,10 @@ pub enum Verb {
         #[arg(long, value_name = "LENGTH", value_parser = length)]
         clearance: Option<f64>,
     },
+    /// How far do parts made with air shift and tilt? `weavelock play plain.toml --clearance "0.2 mm"`
+    Play(super::play::Asked),
+    /// How much clearance releases the lock? `weavelock release plain.toml --process fdm-pla`
+    Release(super::release::Asked),
     /// Which part stops which: along a direction, or over all of them: `weavelock blocking roof.toml --sphere roof.svg`
     Blocking(super::blocking::Blocking),
     /// Does it need flexible parts? The fewest, all such sets, and the bound's proof: `weavelock flex plain.toml`
@@ -94,28 +121,30 @@ pub enum Verb {
     Fab(Fab),
     /// The processes that come along; with a name the file itself, to copy: `weavelock processes fdm-pla > my.toml`
     Processes { name: Option<String> },
-    /// The parts as they are, in place or one by one, in mm: `weavelock export plain.toml --as obj`
-    Export {
-        file: PathBuf,
-        #[arg(long = "as", value_enum, default_value = "stl")]
-        format: Format,
-        /// One file with all parts in place, or a file for each part
-        #[arg(long, value_enum, default_value = "parts")]
-        layout: Together,
-        #[arg(long, default_value = "export")]
-        out: PathBuf,
-    },
+    /// Files for other programs, in mm as the parts touch: `weavelock export plain.toml --out plain.glb`
+    Export(super::exported::Export),
+    /// A picture or printable instructions, without a browser: `weavelock draw plain.toml --what exploded --out a.svg`
+    Draw(Box<super::draw::Draw>),
     /// Re-checks a certificate or plan without the solver that made it: `weavelock verify out/check.json`
     Verify { answer: PathBuf },
     /// The table over all [a,b,c] up to a size, with its picture: `weavelock atlas --max-n 6 --out atlas`
     Atlas(super::atlas::Asked),
-    /// The page for a file, one self-contained HTML file
+    /// The page for a file, one self-contained HTML file: `weavelock report plain.toml --out plain.html`
     Report {
         file: PathBuf,
         #[arg(long, default_value = "report.html")]
         out: PathBuf,
+        /// Also make a mold of this part, to be seen as it opens: `--mold weft-0`
+        #[arg(long, value_name = "PART")]
+        mold: Option<String>,
     },
-    /// JSON Schema of the files in and of every answer
+    /// A commented spec from four questions, or none: `weavelock new mine.toml --defaults`
+    New(super::new::Asked),
+    /// Completions for a shell: `weavelock completions bash`
+    Completions { shell: clap_complete::Shell },
+    /// The manual page, in roff: `weavelock man`
+    Man,
+    /// JSON Schema of the files in and of every answer: `weavelock schema`
     Schema,
 }
 
@@ -149,23 +178,32 @@ pub struct Fab {
     /// Cut this much off below, for a flat print face: `--flatten "0.2 mm"`
     #[arg(long, value_name = "LENGTH", value_parser = length)]
     pub flatten: Option<f64>,
+    /// Form molds by the parts around a part instead of the part: the direct mold, without clearance
+    #[arg(long)]
+    pub direct: bool,
+    /// Castings of a shape at once in each mold
+    #[arg(long, value_name = "N", default_value = "1", value_parser = clap::value_parser!(u8).range(1..=100))]
+    pub gang: u8,
     /// Also check with OpenSCAD, PrusaSlicer (information and slicing) and ADMesh, where installed
     #[arg(long)]
     pub check: bool,
 }
 
-#[derive(ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Format {
-    Stl,
-    Obj,
+/// A number counted from 1.
+fn counted(text: &str) -> Result<usize, String> {
+    text.parse().ok().filter(|&n| n > 0).ok_or_else(|| "numbers are counted from 1".into())
 }
 
-#[derive(ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Together {
-    /// A file for each part
-    Parts,
-    /// One file
-    Whole,
+/// Largest edge of a voxel, in mm: that of a pitch.
+const MAX_EDGE_MM: f64 = 10_000.0;
+
+fn edge(text: &str) -> Result<f64, String> {
+    let mm = length(text)?;
+    if mm > 0.0 && mm <= MAX_EDGE_MM {
+        Ok(mm)
+    } else {
+        Err("a voxel is larger than 0, and at most 10 m".into())
+    }
 }
 
 /// A length with its unit, in mm.

@@ -72,7 +72,7 @@ pub fn blocking(placed: &Placed, asked: &Blocking) -> Result<Told, Trouble> {
 }
 
 /// The graph of one direction, by the patches and by sweeps of the cells (not by the arrangement).
-fn along(joined: &Joined, d: DVec3, reach: Reach) -> Result<DbgAnswer, String> {
+pub(super) fn along(joined: &Joined, d: DVec3, reach: Reach) -> Result<DbgAnswer, String> {
     let asm = &joined.assembly;
     let parts: Vec<_> = asm.ids().collect();
     let held = |p| asm.part(p).mobility == Mobility::Held;

@@ -24,7 +24,7 @@ pub fn check(placed: &Placed, fix: Option<&str>, refine: bool) -> Result<Told, T
 pub fn told(placed: &Placed, check: &Check, levels: Option<Refined>) -> Told {
     let mut answer = answer::check(&placed.joined, check, placed.source.clone());
     let asm = &placed.joined.assembly;
-    let found = interlock::interlock(asm, &placed.joined.patches, check);
+    let found = interlock::interlock(placed.joined.touching(), check);
     answer = answer::with_interlock(answer, answer::interlock(asm, check, &found));
     if let Some(levels) = levels {
         answer = answer::refined(answer, levels);

@@ -2,6 +2,7 @@
 //!
 //! Not promised: anything beyond what `flex` promises.
 
+use super::args::PuzzleArgs;
 use super::args::length;
 use super::load::{self, Placed};
 use super::questions::argument;
@@ -60,8 +61,8 @@ fn duration(text: &str) -> Result<Duration, String> {
     Duration::try_from_secs_f64(seconds).map_err(|_| hint())
 }
 
-pub fn flex(asked: &Asked) -> Result<Told, Trouble> {
-    let placed = load::spec(&asked.file)?.joined()?;
+pub fn flex(asked: &Asked, puzzle: &PuzzleArgs) -> Result<Told, Trouble> {
+    let placed = load::spec(&asked.file, puzzle)?.joined()?;
     let wanted = if asked.minimal { Wanted::Minimal } else { Wanted::Smallest };
     let clearance_mm = asked.clearance.unwrap_or(0.0);
     let settings = Settings { clearance_mm, wanted, work: asked.work, time: asked.time };
@@ -81,7 +82,7 @@ pub fn flexed(placed: &Placed, settings: &Settings) -> Result<FlexAnswer, Troubl
         until: settings.time.and_then(|t| Instant::now().checked_add(t)),
         within,
     };
-    let found = flex::flex(&joined.assembly, &joined.patches, &ask).map_err(|why| {
+    let found = flex::flex(joined.touching(), &ask).map_err(|why| {
         argument(
             format!("not searched: {why}"),
             "flexible parts are found by plans, and plans need parts made of convex cells, thicker than the air".into(),
@@ -151,6 +152,13 @@ fn words(a: &FlexAnswer) -> Vec<String> {
             "Sets that no plan took apart though they are not proven locked: {}. Straight moves of parts and groups were \
              tried, turns and moves in stages were not.",
             a.unproven.len()
+        ));
+    }
+    if !a.doubtful.is_empty() {
+        words.push(format!(
+            "Sets that are locked as written, but not shown to be whatever the files' digits leave open of their contacts: {}. \
+             No bound rests on them.",
+            a.doubtful.len()
         ));
     }
     if a.clearance_mm > 0.0 {

@@ -3,6 +3,7 @@
 //! Not promised: anything beyond what `chirality` promises. What is told about written files was found on them as read
 //! back.
 
+use super::args::PuzzleArgs;
 use super::load::{self, Placed};
 use super::told::{News, Told, Trouble};
 use crate::atlas;
@@ -19,10 +20,10 @@ use crate::report::file::write_whole;
 use crate::spec::Subject;
 use std::path::Path;
 
-pub fn chirality(subject: &str, folder: Option<&Path>) -> Result<Told, Trouble> {
+pub fn chirality(subject: &str, folder: Option<&Path>, puzzle: &PuzzleArgs) -> Result<Told, Trouble> {
     let path = Path::new(subject);
     if load::is_spec(path) {
-        let placed = load::spec(path)?.joined()?;
+        let placed = load::spec(path, puzzle)?.joined()?;
         let hands = found(&placed)?;
         let twin = folder.map(|folder| exported(&placed, folder)).transpose()?;
         return Ok(told(&Hands { twin, ..hands }));
@@ -104,7 +105,7 @@ fn side(placed: &Placed, way: Way, folder: &Path, files: &mut Vec<String>) -> Re
         (Subject::Woven(_), Origin::Meshes) => String::new(),
     };
     put(format!("{word}.toml"), text.as_bytes())?;
-    let back = load::spec(&folder.join(format!("{word}.toml")))?.joined()?;
+    let back = load::spec(&folder.join(format!("{word}.toml")), &PuzzleArgs::default())?.joined()?;
     let (asm, all) = (&back.joined.assembly, back.joined.assembly.ids().collect::<Vec<_>>());
     put(format!("{word}.mm.stl"), &export::stl(asm, &all))?;
     put(format!("{word}.mm.obj"), &export::obj(asm, &all))?;

@@ -62,10 +62,15 @@ fn searched(a: &InterlockAnswer) -> String {
 }
 
 fn core(c: &LockedCore) -> String {
-    if c.parts.len() <= 2 * MOST {
+    let parts = if c.parts.len() <= 2 * MOST {
         c.parts.join(" + ")
     } else {
         format!("{} parts with {}", c.parts.len(), c.parts[0])
+    };
+    if c.within_digits == "holds" {
+        parts
+    } else {
+        format!("{parts} (as written; not shown within the files' digits)")
     }
 }
 

@@ -2,12 +2,15 @@
 //!
 //! Not promised: anything beyond what `spec` and `contact` promise.
 
+use super::args::PuzzleArgs;
+use super::puzzle;
 use crate::contact::{self, Joined};
 use crate::fault::{Fault, Faults};
 use crate::input;
 use crate::locking::Check;
 use crate::report::answer::Source;
 use crate::sampling;
+use crate::spec::puzzle::is_named;
 use crate::spec::{self, Spec, Subject, Syntax};
 use crate::weave::{Hanging, Weave, hangs_together};
 use std::path::Path;
@@ -16,6 +19,8 @@ use std::path::Path;
 pub struct Loaded {
     pub spec: Spec,
     pub source: Source,
+    /// What was taken where nothing was said.
+    pub remarks: Vec<String>,
 }
 
 /// The assembly of a spec, in place.
@@ -25,11 +30,17 @@ pub struct Placed {
     pub joined: Joined,
 }
 
-/// Reads a spec file.
-pub fn spec(file: &Path) -> Result<Loaded, Faults> {
+/// Reads a spec or puzzle file; `asked` goes with the latter.
+pub fn spec(file: &Path, asked: &PuzzleArgs) -> Result<Loaded, Faults> {
+    if is_named(file) {
+        return puzzle::loaded(file, asked);
+    }
+    if asked.some().is_some() {
+        return Err(no_puzzle(file));
+    }
     let text = input::text(input::bytes(file)?, file)?;
     let spec = spec::parse(&text, file, Syntax::of(file, &text))?;
-    Ok(Loaded { spec, source: Source { file: file.display().to_string(), text } })
+    Ok(Loaded { spec, source: Source { file: file.display().to_string(), text }, remarks: Vec::new() })
 }
 
 /// The example that the program carries.
@@ -37,7 +48,7 @@ pub fn example() -> Result<Loaded, Faults> {
     let text = include_str!("../../fixtures/examples/plain-2x2.toml").to_string();
     let file = Path::new("plain-2x2.toml");
     let spec = spec::parse(&text, file, Syntax::Toml)?;
-    Ok(Loaded { spec, source: Source { file: file.display().to_string(), text } })
+    Ok(Loaded { spec, source: Source { file: file.display().to_string(), text }, remarks: Vec::new() })
 }
 
 impl Loaded {
@@ -46,6 +57,7 @@ impl Loaded {
         if let Subject::Woven(woven) = &self.spec.subject {
             joined.remarks.extend(falls_apart(&woven.weave));
         }
+        joined.remarks.splice(0..0, self.remarks);
         Ok(Placed { spec: self.spec, source: self.source, joined })
     }
 }
@@ -79,7 +91,7 @@ pub fn weave(subject: &str) -> Result<Weave, Faults> {
     if !is_spec(path) {
         return Weave::read(path);
     }
-    match spec(path)?.spec.subject {
+    match spec(path, &PuzzleArgs::default())?.spec.subject {
         Subject::Woven(woven) => Ok(woven.weave),
         Subject::Meshes(_) => Err(no_weave(path)),
     }
@@ -88,7 +100,18 @@ pub fn weave(subject: &str) -> Result<Weave, Faults> {
 /// Whether a file's name is that of a spec.
 pub fn is_spec(path: &Path) -> bool {
     let ending = path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase());
-    matches!(ending.as_deref(), Some("toml" | "json"))
+    matches!(ending.as_deref(), Some("toml" | "json" | "xmpuzzle"))
+}
+
+fn no_puzzle(path: &Path) -> Faults {
+    let fault = Fault {
+        file: path.display().to_string(),
+        place: None,
+        key: String::new(),
+        what: "this is no puzzle file".into(),
+        hint: "--problem, --solution and --unit go with files that end in .xmpuzzle".into(),
+    };
+    fault.into()
 }
 
 fn no_weave(path: &Path) -> Faults {

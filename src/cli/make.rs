@@ -1,14 +1,11 @@
-//! Takes an assembly in place; writes its parts, as made or as they are, and tells what was written.
+//! Takes an assembly in place; writes its parts as made, and tells what was written.
 //!
 //! Not promised: a package around the parts; `package` makes that.
 
-use super::args::{Format, Together};
 use super::load::Placed;
 use super::told::{News, Told, Trouble};
 use crate::fabricate;
 use crate::report::content::{Chapter, Column, Table, Tone};
-use crate::report::export;
-use crate::report::file::write_whole;
 use crate::spec::FabSpec;
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -239,41 +236,4 @@ fn checked(report: &Report, more: &[Check]) -> Vec<(String, String)> {
         (format!("checked by {name}"), format!("{passed} passed, {failed} failed, {not_run} not run"))
     };
     by.into_iter().map(line).collect()
-}
-
-#[derive(Serialize)]
-struct ExportAnswer {
-    verb: &'static str,
-    unit: &'static str,
-    files: Vec<String>,
-}
-
-pub fn export(placed: &Placed, format: Format, layout: Together, out: &Path) -> Result<Told, Trouble> {
-    let asm = &placed.joined.assembly;
-    let ending = if format == Format::Stl { "stl" } else { "obj" };
-    let groups: Vec<(String, Vec<_>)> = match layout {
-        Together::Whole => vec![(asm.name.clone(), asm.ids().collect())],
-        Together::Parts => asm.ids().map(|p| (asm.part(p).id.clone(), vec![p])).collect(),
-    };
-    std::fs::create_dir_all(out).map_err(|e| {
-        Trouble::Word(format!(
-            "error: cannot make the folder {}: {e}\n  hint: name a folder that you may write to with --out",
-            out.display()
-        ))
-    })?;
-    let mut files = Vec::new();
-    for (name, parts) in groups {
-        // STL has no unit, so the name says it.
-        let file = format!("{}.mm.{ending}", name.replace(['/', '\\'], "-"));
-        let bytes = match format {
-            Format::Stl => export::stl(asm, &parts),
-            Format::Obj => export::obj(asm, &parts),
-        };
-        write_whole(&out.join(&file), &bytes)?;
-        files.push(file);
-    }
-    let headline = format!("{} files in {}, in mm, in place.", files.len(), out.display());
-    let chapter = Chapter { tone: Tone::Good, headline, words: files.clone(), ..Chapter::default() };
-    let answer = ExportAnswer { verb: "export", unit: "mm", files };
-    Ok(Told::new(News::Good, &answer, &asm.name, "Files", chapter))
 }

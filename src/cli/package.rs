@@ -11,6 +11,7 @@ use crate::fabricate;
 use crate::report::content::{Chapter, Column, Table};
 use serde::Serialize;
 use std::path::Path;
+use weavelock_fab::make::{Cavity, Recipe};
 use weavelock_fab::package::{self, Order, PackageReport, Replace};
 use weavelock_fab::process::{self, Measured, Overrides, Process};
 use weavelock_fab::report::Severity;
@@ -24,7 +25,11 @@ struct PackageAnswer<'a> {
 }
 
 pub fn fab(placed: &Placed, asked: &Fab, common: &Common) -> Result<Told, Trouble> {
-    let recipe = make::recipe(placed, &wish(asked)?, Checkers::of(asked.check))?;
+    let recipe = Recipe {
+        cavity: if asked.direct { Cavity::Surroundings } else { Cavity::Part },
+        gang: asked.gang.into(),
+        ..make::recipe(placed, &wish(asked)?, Checkers::of(asked.check))?
+    };
     let replace = if asked.force { Replace::Allowed } else { Replace::Never };
     let order = Order { replace, draw: &pictured::draw };
     if asked.check && !common.quiet {
@@ -34,6 +39,16 @@ pub fn fab(placed: &Placed, asked: &Fab, common: &Common) -> Result<Told, Troubl
     let mut package = made.map_err(|e| Trouble::Word(format!("error: {e}")))?;
     placed_in(&mut package, &asked.out);
     Ok(told(&package, &asked.out))
+}
+
+/// The package of a run, as the spec says; files of an earlier run give way.
+pub fn of_run(placed: &Placed, out: &Path) -> Result<Told, Trouble> {
+    let recipe = make::recipe(placed, &Wish::default(), Checkers::None)?;
+    let order = Order { replace: Replace::Allowed, draw: &pictured::draw };
+    let made = package::pack(&fabricate::job(&placed.joined), &recipe, &order, out);
+    let mut package = made.map_err(|e| Trouble::Word(format!("error: {e}")))?;
+    placed_in(&mut package, out);
+    Ok(told(&package, out))
 }
 
 fn wish(asked: &Fab) -> Result<Wish, Trouble> {

@@ -56,7 +56,7 @@ fn items(meshes: &[(String, mesh::Mesh)]) -> Vec<Item> {
     meshes.iter().enumerate().map(item).collect()
 }
 
-fn solid(mesh: &mesh::Mesh) -> Solid {
+pub(super) fn solid(mesh: &mesh::Mesh) -> Solid {
     let facet = |t: usize| {
         let [a, b, c] = mesh.corners(t);
         Facet { corners: mesh.triangles[t].to_vec(), normal: (b - a).cross(c - a).normalize_or_zero() }

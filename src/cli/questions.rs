@@ -3,13 +3,14 @@
 //! Not promised: anything beyond what the stage that answers promises.
 
 use super::load::{self, Placed};
+use super::puzzle;
 use super::told::{News, Told, Trouble};
 use super::words;
 use crate::assembly::PartIx;
 use crate::contact::Joined;
+use crate::cores::{self, Contacts, Firm};
 use crate::fault::Fault;
 use crate::input;
-use crate::locking::{self, Verdict};
 use crate::report::answer::{self, Certificate, PlanAnswer, Sealed};
 use crate::report::file::write_whole;
 use crate::report::words as chapters;
@@ -37,18 +38,46 @@ pub fn argument(what: String, hint: String) -> Fault {
 pub fn planned(placed: &Placed, of: &[PartIx], clearance_mm: f64) -> PlanAnswer {
     let joined = &placed.joined;
     let (asm, patches) = (&joined.assembly, &joined.patches);
-    let found = if clearance_mm > 0.0 {
-        with_clearance(asm, patches, clearance_mm / asm.mm_per_unit).map_err(|e| e.to_string()).and_then(
-            |made| sequence::plan_by(&made, of, &[], Motions::Any, |_| None).map_err(|e| e.to_string()),
-        )
-    } else {
-        sequence::plan_by(asm, of, patches, Motions::Any, |set| locked(joined, set))
-            .map_err(|e| e.to_string())
-    };
+    let found = puzzle::plan(placed, of, clearance_mm, || {
+        if clearance_mm > 0.0 {
+            let made =
+                with_clearance(asm, patches, clearance_mm / asm.mm_per_unit).map_err(|e| e.to_string())?;
+            sequence::plan_by(&made, of, &[], Motions::Any, |_| None).map_err(|e| e.to_string())
+        } else {
+            sequence::plan_by(asm, of, patches, Motions::Any, |set| locked(joined, set))
+                .map_err(|e| e.to_string())
+        }
+    });
     let (plan, why) = found.map_or_else(|why| (nothing(), Some(why)), |plan| (plan, None));
     let remarks = why.map(|why| format!("no plan was searched: {why}"));
+    let remarks = remarks.or_else(|| doubtful(joined, &plan).filter(|_| clearance_mm == 0.0));
     answer::plan(joined, plan, of, clearance_mm, remarks, placed.source.clone())
 }
+
+/// What to say of sets that stayed together and are locked as written, but not shown to be within the files' digits.
+fn doubtful(joined: &Joined, plan: &Plan<Certificate>) -> Option<String> {
+    if joined.slack.is_empty() {
+        return None;
+    }
+    let contacts = Contacts::new(joined.touching());
+    let named = |ids: &[String]| {
+        joined.assembly.ids().filter(|&p| ids.contains(&joined.assembly.part(p).id)).collect()
+    };
+    let open = plan.stuck.iter().filter(|s| s.lock.is_none());
+    let written: Vec<String> = open
+        .filter(|s| cores::locked(&contacts, &named(&s.parts)).is_some())
+        .map(|s| s.parts.iter().take(MOST_NAMED).map(String::as_str).collect::<Vec<_>>().join(", "))
+        .collect();
+    (!written.is_empty()).then(|| {
+        format!(
+            "locked as written, but not shown to be whatever the files' digits leave open of their contacts, so no proof: {}",
+            written.join("; ")
+        )
+    })
+}
+
+/// Parts of a set that are named in a remark.
+const MOST_NAMED: usize = 8;
 
 /// The plan of a search that was not made: not found, an honest answer with its reason among the remarks.
 fn nothing() -> Plan<Certificate> {
@@ -59,15 +88,17 @@ fn nothing() -> Plan<Certificate> {
         stuck: Vec::new(),
         searched: Searched::default(),
         touch: 0.0,
+        counted: None,
     }
 }
 
+/// The proof that a set that stayed together is locked, where it holds whatever the files' digits leave open.
 pub fn locked(joined: &Joined, set: &[PartIx]) -> Option<Certificate> {
-    let (asm, patches) = (&joined.assembly, &joined.patches);
-    let Verdict::Locked(stress) = locking::check_some(asm, patches, set) else { return None };
-    let held: Vec<PartIx> = asm.held().filter(|p| set.contains(p)).collect();
-    let still = if held.is_empty() { set[..1].to_vec() } else { held };
-    Some(answer::certificate(asm, &still, &stress))
+    let contacts = Contacts::new(joined.touching());
+    let core = cores::locked(&contacts, &set.iter().copied().collect())?;
+    let core = cores::firm(&contacts, core).filter(|c| c.firm == Firm::Holds)?;
+    let still: Vec<PartIx> = core.still.iter().copied().collect();
+    Some(answer::certificate(&joined.assembly, &still, &core.stress))
 }
 
 pub fn plan(placed: &Placed, of: &[String], clearance_mm: f64) -> Result<Told, Trouble> {

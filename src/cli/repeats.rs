@@ -2,6 +2,7 @@
 //!
 //! Not promised: anything beyond what `repeats` promises.
 
+use super::args::PuzzleArgs;
 use super::args::length;
 use super::load;
 use super::questions::argument;
@@ -102,7 +103,7 @@ pub fn repeats(asked: &Asked) -> Result<Told, Trouble> {
 fn subject(name: &str) -> Result<(Weave, ProfileSpec, f64), Trouble> {
     let path = Path::new(name);
     if load::is_spec(path) {
-        return match load::spec(path)?.spec.subject {
+        return match load::spec(path, &PuzzleArgs::default())?.spec.subject {
             Subject::Woven(w) => Ok((w.weave, w.profile, w.pitch_mm)),
             Subject::Meshes(_) => Err(argument(
                 "an assembly of meshes has no weave to repeat".into(),

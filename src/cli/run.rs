@@ -8,6 +8,9 @@ use super::flex;
 use super::hands;
 use super::load::{self, Loaded, Placed};
 use super::make;
+use super::molded;
+use super::package;
+use super::paged;
 use super::questions;
 use super::repeats;
 use super::told::{News, Told, Trouble};
@@ -19,25 +22,35 @@ use crate::report::content::{Answer, Chapter, Format, Picture};
 use crate::report::draw::{Size, figures};
 use crate::report::file::write_whole;
 use crate::report::page::{PageInput, page};
+use crate::report::viewer::Answers;
 use crate::spec::{Cut, Layout, Subject};
 use crate::weave::{Origin, Weave};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
+use weavelock_fab::process::Route;
+use weavelock_fab::report::Report;
 
 pub fn example(common: &Common) -> Result<Told, Trouble> {
     everything(load::example()?, Path::new("out"), common)
 }
 
 pub fn file(file: &Path, out: &Path, common: &Common) -> Result<Told, Trouble> {
-    everything(load::spec(file)?, out, common)
+    everything(load::spec(file, &common.puzzle)?, out, common)
 }
 
-/// The page alone, without making parts.
-pub fn report(file: &Path, out: &Path, common: &Common) -> Result<Told, Trouble> {
-    let placed = load::spec(file)?.joined()?;
+/// The page alone, without making parts; with the mold of one part where that is asked for.
+pub fn report(file: &Path, out: &Path, mold: Option<&str>, common: &Common) -> Result<Told, Trouble> {
+    let placed = load::spec(file, &common.puzzle)?.joined()?;
+    let part = mold.map(|id| questions::part(&placed.joined, id)).transpose()?;
     let asked = ask(&placed, common)?;
     let none = || Answer::not_run("`weavelock fab` makes the parts");
-    write_whole(out, page(&input(&placed, &asked, none(), none())).as_bytes())?;
+    let mut input = input(&placed, &asked, None, none(), none());
+    if let Some(part) = part {
+        let (exhibit, chapter) = molded::exhibit(&placed, part, molded::MoldRoute::Rigid)?;
+        input.exhibits.extend(exhibit);
+        input.molds = Answer::Given(chapter);
+    }
+    write_whole(out, page(&input).as_bytes())?;
     let headline = format!("The page is {}.", out.display());
     let chapter = Chapter { headline, ..Chapter::default() };
     let files = Files { verb: "report", files: vec![out.display().to_string()] };
@@ -152,7 +165,9 @@ fn everything(loaded: Loaded, out: &Path, common: &Common) -> Result<Told, Troub
     let folder = out.join("parts");
     let made = make::made(&placed, &folder)?;
     let fab = make::told_fab(&made, &folder);
+    let cast = packaged(&placed, &made, &out.join("package"), common)?;
     let mut files = vec![folder.display().to_string()];
+    files.extend(cast.iter().map(|_| out.join("package").display().to_string()));
     let mut keep = |name: &str, bytes: &[u8]| -> Result<(), Trouble> {
         let path = out.join(name);
         write_whole(&path, bytes)?;
@@ -172,8 +187,20 @@ fn everything(loaded: Loaded, out: &Path, common: &Common) -> Result<Told, Troub
     }
     let parts = Answer::Given(make::fab_chapter(&made, &folder, &[]));
     let ledger = Answer::Given(make::ledger_chapter(&made));
-    keep("report.html", page(&input(&placed, &asked, parts, ledger)).as_bytes())?;
+    keep("report.html", page(&input(&placed, &asked, as_made.as_ref(), parts, ledger)).as_bytes())?;
+    let fab = cast.unwrap_or(fab);
     Ok(summary(&placed, asked, as_made, fab, files, out))
+}
+
+/// Where something is cast, parts alone are of little use: then the whole package, with its molds.
+fn packaged(placed: &Placed, made: &Report, out: &Path, common: &Common) -> Result<Option<Told>, Trouble> {
+    if made.routes.iter().all(|r| r.process.route == Route::Print) {
+        return Ok(None);
+    }
+    if !common.quiet {
+        eprintln!("making the molds ...");
+    }
+    package::of_run(placed, out).map(Some)
 }
 
 /// Where the parts as they touch do not go together: whether they do with the clearance that they are made with.
@@ -216,21 +243,42 @@ fn chapter(told: &Result<Told, String>) -> Answer<Chapter> {
 
 /// What is not built; said wherever a whole run is told.
 const LIMITS: [&str; 4] = [
-    "A run makes the parts alone; `weavelock fab` makes the package with plates, sheets, coupon and, for cast parts, molds of two parts.",
+    "A run makes the parts, and where something is cast the package with its molds; `weavelock fab` makes a package with plates, sheets and coupon of prints too.",
     "Plans are straight moves of parts and groups; turns and moves in several stretches are not searched.",
     "Locked is first order at zero clearance; the least clearance that opens a lock is not searched for yet.",
     "The tiles are those of the sampled sites; the check says whether its verdict holds for the curved bisectors too.",
 ];
 
-fn input(placed: &Placed, asked: &Asked, parts: Answer<Chapter>, ledger: Answer<Chapter>) -> PageInput {
+fn answers(asked: &Asked, as_made: Option<&Told>) -> Answers {
+    Answers {
+        check: paged::json(Some(&asked.check)),
+        plan: paged::json(Some(&asked.plan)),
+        plan_as_made: paged::json(as_made),
+        flex: paged::json(asked.flex.as_ref().ok()),
+        chirality: paged::json(asked.chirality.as_ref().ok()),
+    }
+}
+
+fn input(
+    placed: &Placed,
+    asked: &Asked,
+    as_made: Option<&Told>,
+    parts: Answer<Chapter>,
+    ledger: Answer<Chapter>,
+) -> PageInput {
     let none = || Answer::not_run("an assembly of meshes has no weave");
     PageInput {
         title: placed.spec.name.clone(),
         lead: lead(placed),
         pictures: asked.pictures.clone(),
+        exhibits: paged::exhibits(placed, &answers(asked, as_made)),
         draft: asked.weave.as_ref().map_or_else(none, |t| with_drawing(placed, first_chapter(t))),
         verdict: first_chapter(&asked.check),
         plan: first_chapter(&asked.plan),
+        blocking: paged::blocking(placed),
+        molds: Answer::not_run(
+            "`weavelock fab` makes molds for parts that are cast; `weavelock report --mold PART` shows one",
+        ),
         flexible: chapter(&asked.flex),
         repeats: chapter(&asked.repeats),
         chirality: chapter(&asked.chirality),
@@ -258,6 +306,7 @@ fn lead(placed: &Placed) -> String {
     let asm = &placed.joined.assembly;
     let what = match &placed.spec.subject {
         Subject::Woven(woven) => format!("woven of {}", name(&woven.weave)),
+        Subject::Meshes(meshes) if meshes.puzzle.is_some() => "of a puzzle".into(),
         Subject::Meshes(_) => "read from meshes".into(),
     };
     format!(

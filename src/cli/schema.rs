@@ -3,11 +3,14 @@
 //! Not promised: that a file which fits the schema is free of faults; bounds that depend on other keys are not in it.
 
 use super::atlas::AtlasAnswer;
+use super::draw::DrawAnswer;
+use super::exported::ExportAnswer;
 use super::told::{News, Told, Trouble};
 use crate::chirality::answer::Hands;
 use crate::report::answer::fab::{FabAnswer, ProcessesAnswer};
 use crate::report::answer::{
-    BlockingAnswer, CheckAnswer, FlexAnswer, PlanAnswer, RepeatsAnswer, WeaveAnswer,
+    BlockingAnswer, CheckAnswer, FlexAnswer, PlanAnswer, PlayAnswer, ReleaseAnswer, RepeatsAnswer,
+    WeaveAnswer,
 };
 use crate::report::content::{Chapter, Tone};
 use crate::spec::shape::SpecFile;
@@ -20,6 +23,9 @@ pub fn schema() -> Result<Told, Trouble> {
         ("spec", schema_for!(SpecFile)),
         ("check", schema_for!(CheckAnswer)),
         ("plan", schema_for!(PlanAnswer)),
+        ("play", schema_for!(PlayAnswer)),
+        ("release", schema_for!(ReleaseAnswer)),
+        ("new", schema_for!(super::new::NewAnswer)),
         ("blocking", schema_for!(BlockingAnswer)),
         ("flex", schema_for!(FlexAnswer)),
         ("repeats", schema_for!(RepeatsAnswer)),
@@ -27,6 +33,8 @@ pub fn schema() -> Result<Told, Trouble> {
         ("chirality", schema_for!(Hands)),
         ("atlas", schema_for!(AtlasAnswer)),
         ("verify", schema_for!(Verified)),
+        ("draw", schema_for!(DrawAnswer)),
+        ("export", schema_for!(ExportAnswer)),
         ("fab", schema_for!(FabAnswer)),
         ("processes", schema_for!(ProcessesAnswer)),
     ]);

@@ -35,13 +35,44 @@ pub struct Loose {
     pub normals: Vec<DVec3>,
 }
 
+/// By how much a contact may be off.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Slack {
+    /// Of the normal, radians.
+    pub angle: f64,
+    /// Of the points, model units.
+    pub distance: f64,
+}
+
+/// Where parts touch, as far as questions about locks go.
+#[derive(Clone, Copy)]
+pub struct Touching<'a> {
+    pub assembly: &'a Assembly,
+    pub patches: &'a [Patch],
+    /// For each patch; empty: exact.
+    pub slack: &'a [Slack],
+    pub loose: &'a [Loose],
+}
+
+impl<'a> Touching<'a> {
+    /// With these contacts and no doubt about them.
+    pub fn exactly(assembly: &'a Assembly, patches: &'a [Patch]) -> Touching<'a> {
+        Touching { assembly, patches, slack: &[], loose: &[] }
+    }
+}
+
+impl Joined {
+    pub fn touching(&self) -> Touching<'_> {
+        Touching { assembly: &self.assembly, patches: &self.patches, slack: &self.slack, loose: &self.loose }
+    }
+}
+
 /// Parts in place, and where they touch.
 pub struct Joined {
     pub assembly: Assembly,
     pub patches: Vec<Patch>,
-    /// By how much each patch's normal may be off as far as the files tell, in radians; empty where contacts are
-    /// known by identity.
-    pub known: Vec<f64>,
+    /// By how much each patch may be off as far as the files tell; empty where contacts are known by identity.
+    pub slack: Vec<Slack>,
     /// Contacts without a unique normal.
     pub loose: Vec<Loose>,
     pub origin: Origin,
@@ -65,7 +96,7 @@ pub fn join(spec: &Spec) -> Result<Joined, Faults> {
             Ok(Joined {
                 assembly,
                 patches,
-                known: Vec::new(),
+                slack: Vec::new(),
                 loose: Vec::new(),
                 origin: Origin::Woven(Box::new(woven)),
                 remarks: Vec::new(),
@@ -78,7 +109,8 @@ pub fn join(spec: &Spec) -> Result<Joined, Faults> {
 fn join_meshes(spec: &Spec, meshes: &MeshSpec) -> Result<Joined, Faults> {
     let read::Read { assembly, resolution, mut remarks } = read::assembly(spec, meshes)?;
     let tolerance = meshes.tolerance_mm / meshes.mm_per_unit;
-    let turns = meshes.parts.iter().map(|p| p.turn);
+    // A puzzle lists no parts from files: its pieces are turned exactly.
+    let turns = meshes.parts.iter().map(|p| p.turn).chain(std::iter::repeat(0.0));
     let accuracy: Vec<_> =
         resolution.into_iter().zip(turns).map(|(corner, turn)| mesh::Accuracy { corner, turn }).collect();
     let found = mesh::mesh_patches(&assembly, &accuracy, tolerance).map_err(|overlaps| {
@@ -91,10 +123,11 @@ fn join_meshes(spec: &Spec, meshes: &MeshSpec) -> Result<Joined, Faults> {
     })?;
     remarks.extend(unvouched(&found.assumed));
     remarks.extend(found.settled.words());
-    let known = found.facts.iter().map(|f| f.known).collect();
+    let slack =
+        found.facts.iter().zip(&found.off).map(|(f, &distance)| Slack { angle: f.known, distance }).collect();
     let loose = found.assumed.into_iter().filter(|a| !a.normals.is_empty());
     let loose = loose.map(|l| Loose { a: l.a, b: l.b, corners: l.corners, normals: l.normals }).collect();
-    Ok(Joined { assembly, patches: found.patches, known, loose, origin: Origin::Meshes, remarks })
+    Ok(Joined { assembly, patches: found.patches, slack, loose, origin: Origin::Meshes, remarks })
 }
 
 /// What was assumed of contacts without a unique normal.

@@ -3,12 +3,12 @@
 //! Cores found are carried over by the symmetries and decided again there, so each has its own self-stress. A set is
 //! called enough only with a plan for the rest; its images under symmetries are enough by the same plan, moved.
 
-use super::cores::{Contacts, Core, Set};
 use super::cover::{self, Bits};
 use super::symmetry::{Symmetry, symmetries};
 use super::{Ask, Cut, Enough, Flex, Listing, NoFlex, Wanted};
 use crate::assembly::{Assembly, PartIx};
-use crate::contact::Patch;
+use crate::contact::{Patch, Touching};
+use crate::cores::{self, Contacts, Core, Firm, Guard, Set};
 use crate::sequence::clearance::with_clearance;
 use crate::sequence::{self, Plan};
 use std::collections::{BTreeMap, BTreeSet};
@@ -29,6 +29,8 @@ pub struct Search<'a> {
     cores: BTreeMap<Set, Core>,
     unproven: BTreeSet<Set>,
     enough: BTreeMap<Set, Enough>,
+    /// Least locked sets whose lock is not shown within the files' digits.
+    doubtful: BTreeSet<Set>,
 }
 
 /// What became of a candidate.
@@ -40,17 +42,19 @@ enum Judged {
 }
 
 impl<'a> Search<'a> {
-    pub fn new(asm: &'a Assembly, patches: &'a [Patch], ask: &'a Ask) -> Result<Search<'a>, NoFlex> {
-        let planned = with_clearance(asm, patches, ask.clearance)?;
+    pub fn new(touching: Touching<'a>, ask: &'a Ask) -> Result<Search<'a>, NoFlex> {
+        let asm = touching.assembly;
+        let planned = with_clearance(asm, touching.patches, ask.clearance)?;
         let planned = if ask.clearance > 0.0 { planned } else { asm.clone() };
         Ok(Search {
-            contacts: Contacts::new(asm, patches),
+            contacts: Contacts::new(touching),
             planned,
             ask,
             symmetries: symmetries(asm, ask.within),
             cores: BTreeMap::new(),
             unproven: BTreeSet::new(),
             enough: BTreeMap::new(),
+            doubtful: BTreeSet::new(),
         })
     }
 
@@ -69,14 +73,15 @@ impl<'a> Search<'a> {
             enough: self.sorted(),
             cores: self.cores.into_values().collect(),
             unproven: self.unproven.into_iter().collect(),
+            doubtful: self.doubtful.into_iter().collect(),
             symmetries: self.symmetries,
             list,
-            work: self.contacts.work,
+            work: self.contacts.work(),
         })
     }
 
     fn count(&self) -> usize {
-        self.contacts.asm.parts.len()
+        self.contacts.touching.assembly.parts.len()
     }
 
     fn sorted(&mut self) -> Vec<Enough> {
@@ -128,26 +133,26 @@ impl<'a> Search<'a> {
 
     /// Contacts of a part: one with many is a good one to bend.
     fn degree(&self, p: PartIx) -> usize {
-        self.contacts.patches.iter().filter(|q| q.a == p || q.b == p).count()
+        self.contacts.touching.patches.iter().filter(|q| q.a == p || q.b == p).count()
     }
 
     fn rest(&self, flexible: &Set) -> Vec<PartIx> {
-        self.contacts.asm.ids().filter(|p| !flexible.contains(p)).collect()
+        self.contacts.touching.assembly.ids().filter(|p| !flexible.contains(p)).collect()
     }
 
     /// First-order contacts count only where parts touch.
     fn patches(&self) -> &'a [Patch] {
-        if self.ask.clearance > 0.0 { &[] } else { self.contacts.patches }
+        if self.ask.clearance > 0.0 { &[] } else { self.contacts.touching.patches }
     }
 
     fn named(&self, ids: &[String]) -> Set {
-        let asm = self.contacts.asm;
+        let asm = self.contacts.touching.assembly;
         asm.ids().filter(|&p| ids.contains(&asm.part(p).id)).collect()
     }
 
     fn spent(&self) -> Option<Cut> {
         match self.ask.until {
-            _ if self.contacts.work >= self.ask.work => Some(Cut::Work),
+            _ if self.contacts.work() >= self.ask.work => Some(Cut::Work),
             Some(end) if Instant::now() >= end => Some(Cut::Time),
             _ => None,
         }
@@ -175,33 +180,59 @@ impl<'a> Search<'a> {
     }
 
     fn plan(&mut self, parts: &[PartIx]) -> Result<Plan<()>, NoFlex> {
-        self.contacts.pay(&parts.iter().copied().collect());
+        let set: Set = parts.iter().copied().collect();
+        self.contacts.pay(set.len(), self.contacts.patches_among(&set));
         Ok(sequence::plan_of(&self.planned, parts, self.patches(), |_| None)?)
     }
 
-    /// Disjoint minimal cores within a set, with their images; true where there is one.
+    /// Disjoint minimal cores within a set, with their images; true where there is one. What is locked as written and not
+    /// shown to be within the files' digits is no core: a plan may take it apart.
     fn learn_cores(&mut self, mut within: Set) -> bool {
         if self.ask.clearance > 0.0 {
             return false;
         }
         let mut found = false;
         loop {
-            let largest = self.contacts.largest(&within);
+            let largest = cores::largest(&self.contacts, &within, Guard::Without).largest;
             if largest.is_empty() {
                 return found;
             }
-            for core in largest {
-                let core = self.contacts.least(core);
-                within.retain(|p| !core.parts.contains(p));
-                found = true;
-                for image in self.images(&core.parts) {
-                    if !self.cores.contains_key(&image) {
-                        self.cores.extend(self.contacts.core(&image).map(|c| (image, c)));
+            for large in largest {
+                let least = cores::least(&self.contacts, large.clone());
+                within.retain(|p| !least.parts.contains(p));
+                for core in [least, large] {
+                    if let Some(core) = self.holding(core) {
+                        self.learn(core);
+                        found = true;
+                        break;
                     }
                 }
-                self.cores.entry(core.parts.clone()).or_insert(core);
             }
         }
+    }
+
+    /// The core, if its lock holds whatever the files' digits leave open.
+    fn holding(&mut self, core: Core) -> Option<Core> {
+        if self.doubtful.contains(&core.parts) {
+            return None;
+        }
+        let parts = core.parts.clone();
+        let core = cores::firm(&self.contacts, core).filter(|c| c.firm == Firm::Holds);
+        if core.is_none() {
+            self.doubtful.insert(parts);
+        }
+        core
+    }
+
+    /// Notes a core and what the symmetries make of it, each decided where it lies.
+    fn learn(&mut self, core: Core) {
+        for image in self.images(&core.parts) {
+            if image != core.parts && !self.cores.contains_key(&image) {
+                let there = cores::locked(&self.contacts, &image).and_then(|c| self.holding(c));
+                self.cores.extend(there.map(|c| (image, c)));
+            }
+        }
+        self.cores.entry(core.parts.clone()).or_insert(core);
     }
 
     /// Leaves parts out of a set that stayed together while it still does: a smaller one says more.

@@ -4,10 +4,9 @@
 //! budget. A key moves as it is said to (sound); that no other is there holds up to the number of parts stated. Only
 //! connected groups are asked: of two halves that do not touch, each moves without the other.
 
-use super::contacts::Contacts;
-use super::{MOST_UNKNOWNS, Set};
 use crate::assembly::PartIx;
 use crate::blocking::cone::polar;
+use crate::cores::{Contacts, MOST_UNKNOWNS, Set};
 use crate::locking::{Freedom, Motion, Row, Twist, Verdict};
 use glam::DVec3;
 use rayon::prelude::*;

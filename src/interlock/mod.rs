@@ -7,27 +7,20 @@
 //! part would be one, so cores are apart. Two or more held parts keep their places to one another in keys and cores; a
 //! single held part is only a place to look from.
 //!
-//! First order, sound up to round-off. Keys are complete up to the stated number of parts. Cores are complete but for
-//! those whose lock hangs on less than [`cores::SAME_MOTION`], and those said to be undecided or not asked.
+//! First order, sound up to round-off; of meshes a lock that their files' digits leave open is undecided. Keys are complete
+//! up to the stated number of parts, cores as `cores` says.
 
-mod contacts;
-pub mod cores;
 pub mod keys;
 
-pub use cores::Core;
 pub use keys::Key;
 
-use crate::assembly::{Assembly, PartIx};
-use crate::contact::Patch;
-use crate::locking::{Check, Verdict};
-use contacts::Contacts;
-use std::collections::BTreeSet;
+use crate::assembly::PartIx;
+use crate::contact::Touching;
+use crate::cores::{self, Contacts, Core, Firm, Found, Guard, MOST_UNKNOWNS, Set};
+use crate::locking::{Check, Stress, Verdict};
 
-/// A set of parts, in order.
-pub type Set = BTreeSet<PartIx>;
-
-/// More unknowns than this are not asked about together: memory grows with their square, time with their cube.
-pub const MOST_UNKNOWNS: usize = 1536;
+/// No smaller core is looked for inside one of more parts than this: each costs as many verdicts.
+pub const MOST_SHRUNK: usize = 24;
 
 /// The verdict with the held set ignored.
 #[derive(Clone, Debug)]
@@ -45,20 +38,49 @@ pub enum Whole {
 pub struct Interlock {
     pub whole: Whole,
     pub keys: keys::Keys,
-    pub cores: cores::Cores,
+    pub cores: Cores,
+}
+
+#[derive(Clone, Debug, Default)]
+pub struct Cores {
+    pub found: Found,
+    /// Inside the largest, where one is smaller: no part of it can be left out.
+    pub smallest: Vec<Core>,
 }
 
 /// Asks about keys and cores what the verdict leaves open. A locked assembly has no key and is one core.
-pub fn interlock(asm: &Assembly, patches: &[Patch], check: &Check) -> Interlock {
-    let contacts = Contacts::new(asm, patches);
-    let held: Set = check.held.iter().copied().collect();
-    let tied = if held.len() > 1 { held.clone() } else { Set::new() };
-    let all: Set = asm.ids().collect();
+pub fn interlock(touching: Touching, check: &Check) -> Interlock {
+    let contacts = Contacts::new(touching);
+    let tied = cores::tied(touching);
+    let all: Set = touching.assembly.ids().collect();
     Interlock {
         whole: whole(&contacts, &all, &tied),
         keys: keys::keys(&contacts, &all, &tied, &check.rigid),
-        cores: cores::cores(&contacts, &all, &tied, check),
+        cores: found(&contacts, &all, check),
     }
+}
+
+fn found(contacts: &Contacts, all: &Set, check: &Check) -> Cores {
+    let found = match &check.rigid {
+        Verdict::Locked(stress) => {
+            Found { largest: whole_as_core(contacts, all, check, stress), ..Found::default() }
+        }
+        _ => cores::largest(contacts, all, Guard::With),
+    };
+    let small = found.largest.iter().filter(|c| c.parts.len() <= MOST_SHRUNK);
+    let least = small.filter_map(|c| {
+        let least = cores::least(contacts, c.clone());
+        (least.parts.len() < c.parts.len()).then(|| cores::firm(contacts, least))?
+    });
+    Cores { smallest: least.collect(), found }
+}
+
+/// The whole assembly; nothing is said of parts that are all held.
+fn whole_as_core(contacts: &Contacts, all: &Set, check: &Check, stress: &Stress) -> Vec<Core> {
+    let still: Set = check.held.iter().copied().chain(check.fixed).collect();
+    let core = Core { parts: all.clone(), still, stress: stress.clone(), firm: Firm::Unproven };
+    let moves = all.len() > 1 && core.still.len() < all.len();
+    moves.then(|| cores::firm(contacts, core)).flatten().into_iter().collect()
 }
 
 fn whole(contacts: &Contacts, all: &Set, tied: &Set) -> Whole {

@@ -3,7 +3,9 @@
 //! Slower (cubic in the unknowns), and better where rows are nearly dependent: pivots are chosen by size, and nearly
 //! unmoved rows are told from open ones by several guesses. Sound up to [`ROUND_OFF`]; not complete (undecided).
 
-use super::decide::{Force, Gap, Motion, ROUND_OFF, Stress, Verdict, twists, undecided};
+use super::decide::{
+    BALANCED, Force, Gap, MOST_ROUNDS, Motion, ROUND_OFF, Stress, Verdict, twists, undecided,
+};
 use super::dense::{Cholesky, pivot_round_off};
 use super::rows::{Freedom, Row, Unknowns};
 use super::solve::{Candidate, candidate, widest};
@@ -140,6 +142,16 @@ fn sum(rows: &[Row], unknowns: &Unknowns, y: &[f64]) -> Vec<f64> {
     r
 }
 
+/// The largest share of what acts along an unknown that the forces miss of balance.
+fn unbalanced(rows: &[Row], unknowns: &Unknowns, y: &[f64]) -> f64 {
+    let mut acting = vec![0.0; unknowns.count];
+    for (row, f) in rows.iter().zip(y) {
+        unknowns.entries(row).for_each(|(c, v)| acting[c] += (v * f).abs());
+    }
+    let share = |(m, a): (f64, f64)| if m == 0.0 { 0.0 } else { m.abs() / a };
+    sum(rows, unknowns, y).into_iter().zip(acting).map(share).fold(0.0, f64::max)
+}
+
 enum Balanced {
     Stress(Stress),
     Null(Vec<f64>),
@@ -153,8 +165,11 @@ fn balance(rows: &[Row], unknowns: &Unknowns, mut y: Vec<f64>) -> Balanced {
     if let Some(x) = factor.null() {
         return Balanced::Null(x);
     }
-    // Two rounds: the second takes away what the first one's own round-off left.
-    for _ in 0..2 {
+    // The second round takes away what the first one's own round-off left; more only where that still shows.
+    for round in 0..MOST_ROUNDS {
+        if round >= 2 && unbalanced(rows, unknowns, &y) <= BALANCED {
+            break;
+        }
         let x = factor.solve(&sum(rows, unknowns, &y));
         for (f, row) in y.iter_mut().zip(rows) {
             *f -= unknowns.opening(row, &x);

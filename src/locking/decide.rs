@@ -5,9 +5,10 @@
 
 use super::again;
 use super::interior::{Found, Rank, rank, search};
-use super::reduce::{kept, outermost, pair, turned};
+use super::reduce::{by_pair, kept, outermost, pair, turned};
 use super::rows::{Freedom, Row, Unknowns};
-use super::system::System;
+use super::sparse::Pins;
+use super::system::{Nodes, System};
 use crate::assembly::PartIx;
 use glam::DVec3;
 use rayon::prelude::*;
@@ -16,6 +17,12 @@ use std::collections::{BTreeMap, BTreeSet};
 /// What the sum of up to a hundred thousand products of numbers of size 1 is off at most, with room for the solves
 /// that lead there: 1e5 units of round-off are 2.2e-11.
 pub const ROUND_OFF: f64 = 1e-10;
+
+/// Share of what acts along an unknown that forces may miss of balance: 2^-43, a fourth of what `verify` grants.
+pub(super) const BALANCED: f64 = 1.0 / (1_u64 << 43) as f64;
+
+/// Rounds in which forces are brought to balance: each takes what the round-off of the one before left.
+pub(super) const MOST_ROUNDS: usize = 4;
 
 #[derive(Clone, Debug)]
 pub enum Verdict {
@@ -83,11 +90,29 @@ pub(super) fn undecided(why: impl Into<String>, size: f64) -> Verdict {
     Verdict::Undecided(Gap { why: why.into(), size })
 }
 
+/// Which rows a verdict starts from. All give the same verdict, but for round-off; they differ in cost.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Start {
+    /// Those that lie farthest along some axes, of the outlines of rows with one normal.
+    Farthest,
+    /// The outlines whole.
+    Outlines,
+    /// Those that lie farthest, of all rows.
+    FarthestOfAll,
+    /// All.
+    All,
+}
+
 /// Locked, free or undecided over these rows.
 pub fn decide(rows: &[Row], unknowns: &Unknowns) -> Verdict {
+    decide_from(rows, unknowns, Start::Farthest)
+}
+
+/// As [`decide`], to measure what its reductions bring.
+pub fn decide_from(rows: &[Row], unknowns: &Unknowns, start: Start) -> Verdict {
     let verdict = match unknowns.freedom {
-        Freedom::Translation => Question::<3> { rows, unknowns }.decide(),
-        Freedom::Rigid => Question::<6> { rows, unknowns }.decide(),
+        Freedom::Translation => Question::<3> { rows, unknowns, start }.decide(),
+        Freedom::Rigid => Question::<6> { rows, unknowns, start }.decide(),
     };
     match verdict {
         Verdict::Undecided(_) if unknowns.count <= again::MOST_UNKNOWNS => again::decide(rows, unknowns),
@@ -99,6 +124,7 @@ pub fn decide(rows: &[Row], unknowns: &Unknowns) -> Verdict {
 struct Question<'a, const W: usize> {
     rows: &'a [Row],
     unknowns: &'a Unknowns,
+    start: Start,
 }
 
 impl<const W: usize> Question<'_, W> {
@@ -106,11 +132,21 @@ impl<const W: usize> Question<'_, W> {
         if self.unknowns.count == 0 {
             return Verdict::Locked(Stress { forces: Vec::new(), rank: 0, residual: 0.0, pivot_ratio: 1.0 });
         }
-        let mut kept = kept(self.rows, self.unknowns);
-        if let Some(motion) = self.alone(&kept) {
+        let mut kept = match self.start {
+            Start::Farthest | Start::Outlines => kept(self.rows, self.unknowns),
+            Start::FarthestOfAll | Start::All => by_pair(self.rows, self.unknowns),
+        };
+        let mut chosen = match self.start {
+            Start::Farthest | Start::FarthestOfAll => outermost(self.rows, &kept, self.unknowns.freedom),
+            Start::Outlines | Start::All => kept.clone(),
+        };
+        // Where most would be chosen, a second search costs more than the rest of the rows.
+        if 2 * chosen.len() > kept.len() {
+            chosen.clone_from(&kept);
+        }
+        if let Some(motion) = self.alone(&chosen, &kept) {
             return Verdict::Free(motion);
         }
-        let mut chosen = outermost(self.rows, &kept, self.unknowns.freedom);
         loop {
             let x = match self.of_chosen(&chosen) {
                 Answer::Moves(x) => x,
@@ -138,7 +174,10 @@ impl<const W: usize> Question<'_, W> {
         let system = System::<W>::new(&some, self.unknowns, self.unknowns.count / W, node);
         let x = match search(&system) {
             Found::Stress(y) => match rank(&system) {
-                Rank::Full(pivot_ratio) => return Answer::Is(self.lock(chosen, &y, pivot_ratio)),
+                Rank::Full(pivot_ratio) => {
+                    let y = self.balanced(&system, &some, y);
+                    return Answer::Is(self.lock(chosen, &y, pivot_ratio));
+                }
                 Rank::Lacks(x) => x,
                 Rank::Unknown(gap) => return Answer::Is(Verdict::Undecided(gap)),
             },
@@ -149,29 +188,79 @@ impl<const W: usize> Question<'_, W> {
     }
 
     /// The motion of the first part that can start to move while all others stand still: most free assemblies have
-    /// one, and its few unknowns cost nothing beside those of all parts together.
-    fn alone(&self, chosen: &[usize]) -> Option<Motion> {
+    /// one, and its few unknowns cost nothing beside those of all parts together. What few rows do not stop is asked with
+    /// all that are worth it.
+    fn alone(&self, chosen: &[usize], kept: &[usize]) -> Option<Motion> {
+        let (few, all) = (self.by_part(chosen), self.by_part(kept));
+        few.par_iter().zip(&all).enumerate().find_map_first(|(part, (few, all))| {
+            self.unknowns.column[part]?;
+            let moved = self.moves_alone(part, few)?;
+            self.motion(&moved).or_else(|| self.moves_alone(part, all).and_then(|x| self.motion(&x)))
+        })
+    }
+
+    fn by_part(&self, rows: &[usize]) -> Vec<Vec<usize>> {
         let mut own: Vec<Vec<usize>> = vec![Vec::new(); self.unknowns.column.len()];
-        for &k in chosen {
+        for &k in rows {
             own[self.rows[k].a.at()].push(k);
             own[self.rows[k].b.at()].push(k);
         }
-        own.par_iter().enumerate().find_map_first(|(part, own)| {
-            let column = self.unknowns.column[part]?;
-            let some: Vec<Row> = own.iter().map(|&k| turned(&self.rows[k])).collect();
-            let system = System::<W>::new(&some, self.unknowns, 1, |p| (p.at() == part).then_some(0));
-            let moved = match search(&system) {
-                Found::Motion(x) => x,
-                Found::Stress(_) => match rank(&system) {
-                    Rank::Lacks(x) => x,
-                    Rank::Full(_) | Rank::Unknown(_) => return None,
-                },
-                Found::Neither(_) => return None,
-            };
-            let mut x = vec![0.0; self.unknowns.count];
-            x[column..column + W].copy_from_slice(&moved[0]);
-            self.motion(&x)
-        })
+        own
+    }
+
+    /// A motion of one part that these rows allow.
+    fn moves_alone(&self, part: usize, own: &[usize]) -> Option<Vec<f64>> {
+        let column = self.unknowns.column[part]?;
+        let some: Vec<Row> = own.iter().map(|&k| turned(&self.rows[k])).collect();
+        let system = System::<W>::new(&some, self.unknowns, 1, |p| (p.at() == part).then_some(0));
+        let moved = match search(&system) {
+            Found::Motion(x) => x,
+            Found::Stress(_) => match rank(&system) {
+                Rank::Lacks(x) => x,
+                Rank::Full(_) | Rank::Unknown(_) => return None,
+            },
+            Found::Neither(_) => return None,
+        };
+        let mut x = vec![0.0; self.unknowns.count];
+        x[column..column + W].copy_from_slice(&moved[0]);
+        Some(x)
+    }
+
+    /// The forces with what they miss of balance, by the unknowns' own entries, taken off in proportion to their squares,
+    /// until it is within [`BALANCED`] or no more can be done.
+    fn balanced(&self, system: &System<W>, rows: &[Row], mut y: Vec<f64>) -> Vec<f64> {
+        let mut factor = None;
+        let squares: Vec<f64> = y.iter().map(|f| f * f).collect();
+        for _ in 0..MOST_ROUNDS {
+            let (missing, share) = self.missing(rows, &y);
+            if share <= BALANCED {
+                break;
+            }
+            let factor = factor.get_or_insert_with(|| system.factor(&squares, Pins::RoundOff));
+            let off = system.openings(&factor.solve(&system.pattern, &missing));
+            let better: Vec<f64> = (0..y.len()).map(|k| y[k] - squares[k] * off[k]).collect();
+            // Forces that would not push any more: the numbers carry no more.
+            if !better.iter().all(|f| *f > 0.0) {
+                break;
+            }
+            y = better;
+        }
+        y
+    }
+
+    /// What forces miss of balance, and the largest share of what acts along an unknown that this is.
+    fn missing(&self, rows: &[Row], y: &[f64]) -> (Nodes<W>, f64) {
+        let nodes = self.unknowns.count / W;
+        let (mut missing, mut acting) = (vec![[0.0; W]; nodes], vec![[0.0; W]; nodes]);
+        for (row, f) in rows.iter().zip(y) {
+            for (c, v) in self.unknowns.entries(row) {
+                missing[c / W][c % W] += v * f;
+                acting[c / W][c % W] += (v * f).abs();
+            }
+        }
+        let shares = missing.iter().flatten().zip(acting.iter().flatten());
+        let share = shares.map(|(m, a)| if *m == 0.0 { 0.0 } else { m.abs() / a }).fold(0.0, f64::max);
+        (missing, share)
     }
 
     /// The forces scaled to at least 1, in the order of the rows, if they balance by the unknowns' own entries too.

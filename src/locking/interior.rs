@@ -223,6 +223,6 @@ fn keeps<const W: usize>(system: &System<W>, x: Nodes<W>) -> Option<Nodes<W>> {
     (size > 0.0 && worst >= -ROUND_OFF * size).then(|| x.iter().map(|v| v.map(|c| c / size)).collect())
 }
 
-fn largest<const W: usize>(x: &Nodes<W>) -> f64 {
+pub fn largest<const W: usize>(x: &Nodes<W>) -> f64 {
     x.iter().flatten().map(|v| v.abs()).fold(0.0, f64::max)
 }

@@ -11,9 +11,12 @@
 //! the least over all x is what grasping calls the Ferrari-Canny metric.)
 
 use super::factor::Factor;
+use super::many;
+use super::reduce::kept;
 use super::rows::{Freedom, Row, Unknowns};
 use super::{Force, Motion, Stress};
 use crate::assembly::PartIx;
+use crate::contact::Slack;
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{
     DefaultSettings, DefaultSolver, IPSolver, SolverStatus, SupportedConeT::NonnegativeConeT,
@@ -28,9 +31,25 @@ use std::collections::BTreeMap;
 const MOST_UNKNOWNS: usize = 1500;
 const MOST_WORK: usize = 40_000_000;
 
-/// Linear programs that tighten a bound, and the unknowns up to which they are worth it: a tenth of a second or so.
-pub const PROGRAMS: usize = 16;
+/// How a bound is made.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Effort {
+    /// From the self-stress alone.
+    Plain,
+    /// Tightened by linear programs, for as many goals as their work allows: at most about a second.
+    Programs,
+}
+
+/// Unknowns up to which programs are worth it.
 const MOST_UNKNOWNS_OF_PROGRAMS: usize = 120;
+
+/// Rows times unknowns squared over all programs: a program takes about twenty factorizations of that size. Not fewer than
+/// [`LEAST_PROGRAMS`] are tried.
+const MOST_WORK_OF_PROGRAMS: usize = 20_000_000;
+const LEAST_PROGRAMS: usize = 16;
+
+/// Programs that are solved side by side.
+const BATCH: usize = 8;
 
 /// Products of rows and parts up to which motions of single parts are tried for an upper bound.
 const MOST_SINGLES: usize = 2_000_000;
@@ -81,9 +100,8 @@ pub struct Bound {
     pub near: Vec<Vec<f64>>,
 }
 
-/// The bound for a lock, tightened by up to so many linear programs; none where there are too many unknowns, or the rows
-/// that carry a force are nearly dependent.
-pub fn lock(problem: &Weighted, stress: &Stress, programs: usize) -> Option<Bound> {
+/// The bound for a lock; none where there are too many unknowns, or the rows that carry a force are nearly dependent.
+pub fn lock(problem: &Weighted, stress: &Stress, effort: Effort) -> Option<Bound> {
     let n = problem.unknowns.count;
     if n == 0 {
         return Some(Bound { lower: f64::INFINITY, near: Vec::new() });
@@ -97,11 +115,19 @@ pub fn lock(problem: &Weighted, stress: &Stress, programs: usize) -> Option<Boun
     let bound = |goal: Goal| (some.bound(&least_norm(&some, &factor, &size, goal), goal), goal);
     let mut bounds: Vec<(f64, Goal)> = goals.into_par_iter().map(bound).collect();
     let mut near = vec![factor.weakest()];
-    if n <= MOST_UNKNOWNS_OF_PROGRAMS {
-        tighten(&some, programs, &mut bounds, &mut near);
+    if effort == Effort::Programs && n <= MOST_UNKNOWNS_OF_PROGRAMS {
+        let all = problem.outlined();
+        let few = all.rows.len() * n * n * LEAST_PROGRAMS <= MOST_WORK_OF_PROGRAMS;
+        tighten(if few { &all } else { &some }, &mut bounds, &mut near);
     }
     let lower = bounds.iter().map(|b| b.0).fold(f64::INFINITY, f64::min);
     Some(Bound { lower, near })
+}
+
+/// The bound of `many` as an angle for all normals, proven; none where it shows nothing or nothing can move.
+pub fn of_many(stress: &Stress, unknowns: &Unknowns) -> Option<f64> {
+    let turned = vec![Slack { angle: 1.0, distance: 0.0 }; stress.forces.len()];
+    (unknowns.count > 0).then(|| many::survives(stress, &turned, unknowns)).filter(|angle| *angle > 0.0)
 }
 
 /// The angle by which every normal may be turned so that the rows allow one of these motions, one of a single part
@@ -115,40 +141,31 @@ pub fn shown(rows: &[Row], unknowns: &Unknowns, motions: &[Vec<f64>]) -> Option<
     all.reduce(f64::min).map(|angle| angle * (1.0 + 1e-9))
 }
 
-/// As [`shown`], where each row's normal may be turned by no more than its own angle; none where no motion passes.
-pub fn passing(rows: &[Row], unknowns: &Unknowns, motions: &[Vec<f64>], angles: &[f64]) -> Option<f64> {
-    let most = |x: &[f64], sign: f64| {
-        let mut needed = rows.iter().zip(angles).map(|(row, a)| (needed(row, unknowns, x, sign), *a));
-        needed.try_fold(0.0, |most, (angle, a)| (angle <= a).then_some(f64::max(most, angle)))
-    };
-    let all = tried(rows, unknowns, motions);
-    all.iter().flat_map(|x| [1.0, -1.0].map(|sign| most(x, sign))).flatten().reduce(f64::min)
-}
-
 /// By how much the row's normal must be turned so that it lets the motion, or its reverse, pass.
 fn needed(row: &Row, unknowns: &Unknowns, x: &[f64], sign: f64) -> f64 {
     let into = -sign * unknowns.opening(row, x);
-    if into > 0.0 { (into / velocity(row, unknowns, x).length()).min(1.0).asin() } else { 0.0 }
+    if into > 0.0 { (into / velocity(row, unknowns, x).0.length()).min(1.0).asin() } else { 0.0 }
 }
 
 /// The motions, and those of a single part along or about an axis where there are not too many.
-fn tried(rows: &[Row], unknowns: &Unknowns, motions: &[Vec<f64>]) -> Vec<Vec<f64>> {
+pub(super) fn tried(rows: &[Row], unknowns: &Unknowns, motions: &[Vec<f64>]) -> Vec<Vec<f64>> {
     let singles = if rows.len() * unknowns.count <= 6 * MOST_SINGLES { unknowns.count } else { 0 };
     let single = |k: usize| (0..unknowns.count).map(|c| f64::from(u8::from(c == k))).collect::<Vec<f64>>();
     motions.iter().cloned().chain((0..singles).map(single)).collect()
 }
 
-/// Velocity of part b against part a at the row's point.
-fn velocity(row: &Row, unknowns: &Unknowns, x: &[f64]) -> DVec3 {
+/// Velocity of part b against part a at the row's point, and its rate of turning against it.
+pub(super) fn velocity(row: &Row, unknowns: &Unknowns, x: &[f64]) -> (DVec3, DVec3) {
     let side = |part: PartIx| {
-        let Some(c) = unknowns.column[part.at()] else { return DVec3::ZERO };
+        let Some(c) = unknowns.column[part.at()] else { return (DVec3::ZERO, DVec3::ZERO) };
         let turn = match unknowns.freedom {
             Freedom::Translation => DVec3::ZERO,
             Freedom::Rigid => DVec3::from_slice(&x[c + 3..]) / unknowns.lever[part.at()],
         };
-        DVec3::from_slice(&x[c..]) + turn.cross(row.point - unknowns.centre[part.at()])
+        (DVec3::from_slice(&x[c..]) + turn.cross(row.point - unknowns.centre[part.at()]), turn)
     };
-    side(row.b) - side(row.a)
+    let ((v, w), (u, t)) = (side(row.b), side(row.a));
+    (v - u, w - t)
 }
 
 /// The margin of a free verdict with this motion as its witness: the least angle between a contact's plane and the
@@ -192,15 +209,27 @@ fn velocity_of(twists: &BTreeMap<PartIx, super::Twist>) -> impl Fn(PartIx, DVec3
 }
 
 /// Solves linear programs for the goals with the least bounds until the least has been solved for.
-fn tighten(problem: &Weighted, programs: usize, bounds: &mut [(f64, Goal)], near: &mut Vec<Vec<f64>>) {
+fn tighten(problem: &Weighted, bounds: &mut [(f64, Goal)], near: &mut Vec<Vec<f64>>) {
+    let n = problem.unknowns.count;
+    let affordable = MOST_WORK_OF_PROGRAMS / (problem.rows.len() * n * n).max(1);
+    let mut left = affordable.max(LEAST_PROGRAMS);
     let mut done = vec![false; bounds.len()];
-    for _ in 0..programs {
-        let least = (0..bounds.len()).min_by(|&i, &j| bounds[i].0.total_cmp(&bounds[j].0));
-        let Some(k) = least.filter(|&k| !done[k]) else { break };
-        done[k] = true;
-        if let Some((y, x)) = program(problem, bounds[k].1) {
-            bounds[k].0 = bounds[k].0.max(problem.bound(&y, bounds[k].1));
-            near.push(x);
+    while left > 0 {
+        let mut order: Vec<usize> = (0..bounds.len()).collect();
+        order.sort_by(|&i, &j| bounds[i].0.total_cmp(&bounds[j].0).then(i.cmp(&j)));
+        if done[order[0]] {
+            break;
+        }
+        let open = order.into_iter().filter(|&k| !done[k]).take(BATCH.min(left));
+        let batch: Vec<usize> = open.collect();
+        left -= batch.len();
+        let found: Vec<_> = batch.par_iter().map(|&k| program(problem, bounds[k].1)).collect();
+        for (k, found) in batch.into_iter().zip(found) {
+            done[k] = true;
+            if let Some((y, x)) = found {
+                bounds[k].0 = bounds[k].0.max(problem.bound(&y, bounds[k].1));
+                near.push(x);
+            }
         }
     }
 }
@@ -213,6 +242,13 @@ struct Goal {
 }
 
 impl Weighted<'_> {
+    /// Without rows inside the outlines of those with one normal: they cost programs more than they bring.
+    fn outlined(&self) -> Weighted<'_> {
+        let at = kept(&self.rows, self.unknowns);
+        let weights = at.iter().map(|&k| self.weights[k]).collect();
+        Weighted { rows: at.into_iter().map(|k| self.rows[k]).collect(), weights, unknowns: self.unknowns }
+    }
+
     /// The rows that carry a force, with the forces; none where one is not among the rows.
     fn carrying(&self, forces: &[Force]) -> Option<(Weighted<'_>, Vec<f64>)> {
         let bits =
@@ -314,7 +350,7 @@ mod tests {
         let stress = Stress { forces, rank: 3, residual: 0.0, pivot_ratio: 1.0 };
         let weights = speeds(&rows, &unknowns);
         let problem = Weighted { rows: rows.clone(), unknowns: &unknowns, weights };
-        let found = lock(&problem, &stress, PROGRAMS).unwrap();
+        let found = lock(&problem, &stress, Effort::Programs).unwrap();
         let truth = (1.0 / 3.0_f64.sqrt()).asin();
         assert!(found.lower <= truth && found.lower > 0.9 / 3.0_f64.sqrt(), "{}", found.lower);
         let diagonal = vec![vec![1.0, 1.0, 1.0]];

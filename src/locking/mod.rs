@@ -7,8 +7,10 @@
 mod again;
 mod decide;
 mod dense;
+pub mod digits;
 mod factor;
 mod interior;
+mod many;
 pub mod margin;
 mod order;
 mod reduce;
@@ -18,9 +20,9 @@ mod sparse;
 mod system;
 mod vouch;
 
-pub use decide::{Force, Gap, Motion, ROUND_OFF, Stress, Twist, Verdict, decide};
+pub use decide::{Force, Gap, Motion, ROUND_OFF, Start, Stress, Twist, Verdict, decide, decide_from};
 pub use rows::{Freedom, Row, Unknowns, rows};
-pub use vouch::check_loose;
+pub use vouch::{check_loose, vouched};
 
 use crate::assembly::{Assembly, PartIx};
 use crate::contact::Patch;

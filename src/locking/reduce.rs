@@ -27,6 +27,14 @@ pub fn kept(rows: &[Row], unknowns: &Unknowns) -> Vec<usize> {
     keys.par_chunk_by(|k, l| (k.0, k.1) == (l.0, l.1)).flat_map_iter(|group| outline(rows, group)).collect()
 }
 
+/// All rows on a part that may move, pair by pair, by their index.
+pub fn by_pair(rows: &[Row], unknowns: &Unknowns) -> Vec<usize> {
+    let free = |r: &Row| unknowns.column[r.a.at()].is_some() || unknowns.column[r.b.at()].is_some();
+    let mut all: Vec<usize> = (0..rows.len()).filter(|&k| free(&rows[k])).collect();
+    all.sort_unstable_by_key(|&k| (pair(&rows[k]), k));
+    all
+}
+
 /// Of rows that stand pair by pair, those of each pair that lie farthest along the axes of force and moment and their
 /// diagonals: few, and mostly enough for a lock. Not all extreme rays of the pair's cone are among them.
 pub fn outermost(rows: &[Row], kept: &[usize], freedom: Freedom) -> Vec<usize> {

@@ -24,6 +24,8 @@ pub enum Pins {
     /// each entry as products are added there (Higham 2002, theorem 10.3), the norm by that times a row's entries
     /// (Rump 2006).
     Proof,
+    /// As `Proof`, less this as well: if none is left out all eigenvalues of the scaled matrix are proven to be larger.
+    Above(f64),
 }
 
 /// S G S = L L^T on the columns that are not pinned, S diagonal.
@@ -52,6 +54,7 @@ impl<const W: usize> Factor<W> {
             Pins::RoundOff => (round_off, 0.0),
             Pins::Doubtful(times) => (bound * times, 0.0),
             Pins::Proof => (round_off, bound),
+            Pins::Above(least) => (round_off, bound + least),
         };
         let mut pivots = Pivots { least, smallest: f64::INFINITY, largest: 0.0, pinned: Vec::new() };
         let mut at = vec![0; pattern.place.len()];
@@ -66,6 +69,11 @@ impl<const W: usize> Factor<W> {
         let pinned = pivots.pinned.iter().map(|&(k, c)| (node[k], c)).collect();
         let pivot_ratio = if pivots.largest > 0.0 { pivots.smallest / pivots.largest } else { 1.0 };
         Factor { l: blocks, scale, pinned, pivot_ratio }
+    }
+
+    /// What the matrix was scaled by, for each node.
+    pub fn scale(&self) -> &[[f64; W]] {
+        &self.scale
     }
 
     /// Solves G x = b on the columns that are not pinned; the other components of x are 0. By node.

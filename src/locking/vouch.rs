@@ -12,20 +12,16 @@ use glam::DVec3;
 /// As [`check`], with contacts that have no unique normal.
 pub fn check_loose(assembly: &Assembly, patches: &[Patch], loose: &[Loose], fix: Option<PartIx>) -> Check {
     let first = check(assembly, patches, fix);
-    let translation = vouched(assembly, patches, loose, fix, first.translation.clone(), |c| c.translation);
-    let rigid = vouched(assembly, patches, loose, fix, first.rigid.clone(), |c| c.rigid);
+    let loose: Vec<&Loose> = loose.iter().collect();
+    let with = |planes: &[Patch]| check(assembly, &[patches, planes].concat(), fix);
+    let translation = vouched(&loose, first.translation.clone(), |planes| with(planes).translation);
+    let rigid = vouched(&loose, first.rigid.clone(), |planes| with(planes).rigid);
     Check { translation, rigid, ..first }
 }
 
-fn vouched(
-    assembly: &Assembly,
-    patches: &[Patch],
-    loose: &[Loose],
-    fix: Option<PartIx>,
-    mut verdict: Verdict,
-    of: impl Fn(Check) -> Verdict,
-) -> Verdict {
-    let mut rows = patches.to_vec();
+/// The verdict where a motion keeps these contacts too; `with` decides with some of their planes as contacts.
+pub fn vouched(loose: &[&Loose], mut verdict: Verdict, with: impl Fn(&[Patch]) -> Verdict) -> Verdict {
+    let mut planes = Vec::new();
     // Each round takes at least one loose contact for good.
     for round in 0..=loose.len() {
         let motion = match &verdict {
@@ -37,8 +33,8 @@ fn vouched(
         if broken.is_empty() {
             return verdict;
         }
-        rows.extend(broken);
-        verdict = of(check(assembly, &rows, fix));
+        planes.extend(broken);
+        verdict = with(&planes);
     }
     let why = "free if contacts without a unique normal give way; no motion was found that they let pass";
     Verdict::Undecided(Gap { why: why.into(), size: f64::NAN })

@@ -1,9 +1,12 @@
-//! Takes chapters, gives one HTML file that stands alone: no script, no address outside, the same bytes every time.
+//! Takes chapters and exhibits, gives one HTML file that stands alone: no address outside, the same bytes every time.
 //!
 //! Promised: caller's strings are text wherever they appear, never markup; an SVG is shown as an image, which runs
-//! nothing. Not promised: any knowledge of geometry, or that a picture's bytes are a picture.
+//! nothing; no script runs but the viewer's own, named by its hash. Not promised: any knowledge of geometry, or that a
+//! picture's bytes are a picture.
 
-use super::content::{Align, Answer, Chapter, Format, Picture, Table, Tone, harmless};
+use super::content::{Align, Answer, Chapter, Picture, Table, Tone};
+use super::html::Html;
+use super::viewer::{self, Exhibit};
 
 /// Everything that the page says. Chapters that nobody asked for are [`Answer::NotRun`] and are shown so.
 #[derive(Clone, Debug, PartialEq)]
@@ -11,15 +14,19 @@ pub struct PageInput {
     pub title: String,
     /// What was looked at, in one sentence.
     pub lead: String,
-    /// Above everything else; the first one is shown large.
+    /// Shown above everything else; the first one large. A live view takes their place where a browser can show it.
     pub pictures: Vec<Picture>,
+    /// What can be turned and taken apart; none: the pictures stay.
+    pub exhibits: Vec<Exhibit>,
     pub draft: Answer<Chapter>,
     pub verdict: Answer<Chapter>,
     pub plan: Answer<Chapter>,
+    pub blocking: Answer<Chapter>,
     pub flexible: Answer<Chapter>,
     pub repeats: Answer<Chapter>,
     pub chirality: Answer<Chapter>,
     pub parts: Answer<Chapter>,
+    pub molds: Answer<Chapter>,
     pub ledger: Answer<Chapter>,
     pub findings: Answer<Chapter>,
     pub limits: Vec<String>,
@@ -27,43 +34,54 @@ pub struct PageInput {
 
 impl PageInput {
     /// Anchor, title and answer of each chapter, in the order of the page.
-    fn chapters(&self) -> [(&'static str, &'static str, &Answer<Chapter>); 9] {
+    fn chapters(&self) -> [(&'static str, &'static str, &Answer<Chapter>); 11] {
         [
             ("verdict", "Does it lock?", &self.verdict),
             ("draft", "The weave", &self.draft),
             ("plan", "How it goes together", &self.plan),
+            ("blocking", "Who stops whom", &self.blocking),
             ("flexible", "Flexible parts", &self.flexible),
             ("repeats", "Repetition", &self.repeats),
             ("chirality", "Chirality", &self.chirality),
             ("parts", "Parts as made", &self.parts),
+            ("molds", "Molds", &self.molds),
             ("ledger", "Scale ledger", &self.ledger),
             ("findings", "Findings", &self.findings),
         ]
     }
 }
 
-/// Nothing may be fetched or run, whatever a string smuggled in; only embedded images and the page's own style.
-const POLICY: &str =
-    "default-src 'none'; img-src data:; style-src 'unsafe-inline'; base-uri 'none'; form-action 'none'";
+/// Nothing may be fetched, whatever a string smuggled in, and nothing run but the viewer's own script; only embedded
+/// images and the page's own style.
+fn policy(input: &PageInput) -> String {
+    let script = match input.exhibits.is_empty() {
+        true => String::new(),
+        false => format!(" script-src '{}';", viewer::script_hash()),
+    };
+    format!(
+        "default-src 'none'; img-src data:; style-src 'unsafe-inline';{script} base-uri 'none'; form-action 'none'"
+    )
+}
 
 /// The page as UTF-8 HTML.
 pub fn page(input: &PageInput) -> String {
     let mut h = Html::default();
     h.raw("<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n");
-    h.raw("<meta http-equiv=\"Content-Security-Policy\" content=\"").text(POLICY).raw("\">\n");
+    h.raw("<meta http-equiv=\"Content-Security-Policy\" content=\"").text(&policy(input)).raw("\">\n");
     h.raw("<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n");
     h.raw("<meta name=\"color-scheme\" content=\"light dark\">\n");
     h.raw("<title>").text(&input.title).raw("</title>\n<style>\n");
-    h.raw(include_str!("page.css")).raw("</style>\n</head>\n<body>\n");
+    h.raw(include_str!("page.css")).raw(viewer::STYLE).raw("</style>\n</head>\n<body>\n");
     h.raw("<a class=\"skip\" href=\"#main\">Skip to the answers</a>\n");
     header(&mut h, input);
     contents(&mut h, input);
     h.raw("<main id=\"main\">\n");
     input.chapters().iter().for_each(|(anchor, title, answer)| section(&mut h, anchor, title, answer));
     limits(&mut h, &input.limits);
-    h.raw("</main>\n<footer><p>Made by weavelock. This file is complete: it loads nothing and runs nothing.</p></footer>\n");
+    h.raw("</main>\n<footer><p>Made by weavelock. This file is complete: it loads nothing from elsewhere.</p></footer>\n");
+    script(&mut h, &input.exhibits);
     h.raw("</body>\n</html>\n");
-    h.0
+    h.into_text()
 }
 
 fn header(h: &mut Html, input: &PageInput) {
@@ -75,8 +93,29 @@ fn header(h: &mut Html, input: &PageInput) {
     if let Answer::Given(c) = &input.verdict {
         headline(h, c);
     }
-    pictures(h, &input.pictures);
     h.raw("</header>\n");
+    look(h, input);
+}
+
+/// The still pictures, in a place that the live view takes over.
+fn look(h: &mut Html, input: &PageInput) {
+    if input.exhibits.is_empty() {
+        return pictures(h, &input.pictures);
+    }
+    h.raw("<div class=\"viewer\" id=\"viewer\" role=\"region\" aria-label=\"The parts in 3D\">\n<div class=\"still\">\n");
+    pictures(h, &input.pictures);
+    h.raw("</div>\n<noscript><p class=\"note\">Scripts are off: these pictures stand for the view in 3D.</p></noscript>\n</div>\n");
+}
+
+/// The exhibits as data and the script that shows them.
+fn script(h: &mut Html, exhibits: &[Exhibit]) {
+    if exhibits.is_empty() {
+        return;
+    }
+    h.raw("<script type=\"application/json\" id=\"viewer-data\">");
+    // Safe inside a script element by its making.
+    h.data(&viewer::payload(exhibits));
+    h.raw("</script>\n<script>").raw(viewer::SCRIPT).raw("</script>\n");
 }
 
 fn contents(h: &mut Html, input: &PageInput) {
@@ -156,11 +195,7 @@ fn pictures(h: &mut Html, pictures: &[Picture]) {
             .raw("\" height=\"")
             .text(&p.height.to_string());
         h.raw("\" alt=\"").text(&p.alt).raw("\" src=\"");
-        match &p.format {
-            Format::Png(bytes) => h.raw("data:image/png;base64,").base64(bytes),
-            Format::Svg(text) => h.raw("data:image/svg+xml;base64,").base64(text.as_bytes()),
-        };
-        h.raw("\">");
+        h.image(&p.format).raw("\">");
         if !p.caption.is_empty() {
             h.raw("<figcaption>").text(&p.caption).raw("</figcaption>");
         }
@@ -226,44 +261,4 @@ fn limits(h: &mut Html, limits: &[String]) {
         h.raw("</ul>\n");
     }
     h.raw("</section>\n");
-}
-
-/// Markup under construction. Only words of this program get in raw; a caller's string has no way around [`Html::text`].
-#[derive(Default)]
-struct Html(String);
-
-impl Html {
-    fn raw(&mut self, markup: &'static str) -> &mut Html {
-        self.0.push_str(markup);
-        self
-    }
-
-    /// Safe between tags and inside double quotes.
-    fn text(&mut self, text: &str) -> &mut Html {
-        for c in text.chars() {
-            match c {
-                '&' => self.0.push_str("&amp;"),
-                '<' => self.0.push_str("&lt;"),
-                '>' => self.0.push_str("&gt;"),
-                '"' => self.0.push_str("&quot;"),
-                '\'' => self.0.push_str("&#39;"),
-                '\n' => self.0.push('\n'),
-                c => self.0.push(harmless(c)),
-            }
-        }
-        self
-    }
-
-    /// RFC 4648, with padding.
-    fn base64(&mut self, bytes: &[u8]) -> &mut Html {
-        const LETTERS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-        for group in bytes.chunks(3) {
-            let word = (0..3).fold(0u32, |w, k| w << 8 | u32::from(group.get(k).copied().unwrap_or(0)));
-            for k in 0..4 {
-                let letter = LETTERS[(word >> (18 - 6 * k) & 63) as usize];
-                self.0.push(if k <= group.len() { char::from(letter) } else { '=' });
-            }
-        }
-        self
-    }
 }

@@ -6,6 +6,7 @@ use super::content::{Chapter, Column, Table, Tone};
 use super::steps;
 use crate::assembly::{Assembly, PartIx};
 use crate::locking::{Check, Freedom, Motion, Stress, Twist, Verdict};
+use crate::sequence::lattice::answer::{Counted, Word as Fewest};
 use crate::sequence::{Outcome, Plan, Straight, Stuck};
 use glam::DVec3;
 
@@ -96,18 +97,35 @@ fn free(assembly: &Assembly, motion: &Motion) -> Chapter {
 pub fn plan<C>(assembly: &Assembly, plan: &Plan<C>) -> Chapter {
     let searched = [plan.searched.sets, plan.searched.directions, plan.searched.states].map(thousands);
     let touch = format!("overlap up to {} mm", scientific(plan.touch * assembly.mm_per_unit));
-    let facts = vec![
-        fact(
-            "searched",
-            format!("{} sets, {} directions, {} poses on the way", searched[0], searched[1], searched[2]),
-        ),
-        fact("counts as touching", touch),
-    ];
+    let looked =
+        format!("{} sets, {} directions, {} poses on the way", searched[0], searched[1], searched[2]);
+    let mut facts: Vec<(String, String)> = plan.counted.iter().flat_map(counted).collect();
+    facts.extend([fact("searched", looked), fact("counts as touching", touch)]);
     let steps = (!plan.steps.is_empty()).then(|| steps::table(assembly, plan));
     let tables = steps.into_iter().chain(steps::reached(plan)).collect();
     let mut chapter = Chapter { facts, tables, ..outcome(plan) };
     chapter.words.extend(steps::gives(plan));
     chapter
+}
+
+/// How many moves along the axes, as puzzlers count them.
+fn counted(c: &Counted) -> Vec<(String, String)> {
+    let fewest = match c.fewest {
+        Fewest::Proven => "the fewest for each set from where it stands: proven by search",
+        Fewest::NotProven => "not proven to be the fewest",
+    };
+    let level = c.level.iter().map(|level| fact("level", format!("{level} ({fewest})")));
+    let kept = c.kept.iter().map(|k| {
+        let looked = match k.within_moves {
+            None => {
+                "every position that moves along the axes reach was looked at, none lets parts leave".into()
+            }
+            Some(moves) => format!("the search gave up after looking at all positions within {moves} moves"),
+        };
+        fact("stay together", format!("{}: {looked}", k.parts.join(", ")))
+    });
+    let positions = fact("positions", thousands(c.positions));
+    level.chain([fact("moves", c.moves.to_string())]).chain(kept).chain([positions]).collect()
 }
 
 /// The headline of a plan, and why there is none.
@@ -130,7 +148,9 @@ fn outcome<C>(plan: &Plan<C>) -> Chapter {
         Outcome::NotFound => {
             let searched = plan.searched.states > 0;
             let excluded = plan.stuck.iter().all(|s| s.straight_moves == Straight::None);
-            let why = if searched {
+            let why = if plan.counted.is_some() {
+                "What was looked at on their lattice is told below; turns are not excluded."
+            } else if searched {
                 "Looked at were single straight moves, straight moves that stop half way, turns and joint motions, until \
                  the counted work was used up; how far each part got is told below."
             } else if excluded {

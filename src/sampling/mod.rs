@@ -12,8 +12,9 @@ pub use refine::{Level, Refined, refined};
 
 use crate::assembly::PartIx;
 use crate::contact::chord::{self, ChordError};
-use crate::contact::{Joined, Origin, Patch};
-use crate::locking::margin::{self, Weighted};
+use crate::contact::{Joined, Origin, Patch, Slack};
+use crate::locking::digits::{self, Within};
+use crate::locking::margin::{self, Effort, Weighted};
 use crate::locking::{Check, Freedom, Motion, Row, Stress, Unknowns, Verdict, decide, rows};
 use glam::DVec3;
 use schemars::JsonSchema;
@@ -68,21 +69,32 @@ pub struct Sampling {
 /// Contact patches up to which margins and errors are measured: some seconds.
 pub const MOST_PATCHES: usize = 100_000;
 
-fn not_measured(joined: &Joined) -> Standing {
+/// Where contacts are too many for more: the bound for many parts, and no more.
+fn not_measured(joined: &Joined, freedom: Freedom, verdict: &Verdict, still: &[PartIx]) -> Standing {
+    let margin = match verdict {
+        Verdict::Locked(stress) => {
+            let rows: Vec<Row> = stress.forces.iter().map(|f| f.row).collect();
+            let unknowns = Unknowns::new(&joined.assembly, &rows, still, freedom);
+            let lower = margin::of_many(stress, &unknowns);
+            Some(Margin { norm: NORM.into(), lower, upper: None })
+        }
+        _ => None,
+    };
     let (beyond_sampling, beyond_why) = match &joined.origin {
         Origin::Meshes => as_given(),
         Origin::Woven(_) => (Beyond::Unproven, format!("not measured for more than {MOST_PATCHES} contacts")),
     };
-    Standing { margin: None, beyond_sampling, beyond_why }
+    Standing { margin, beyond_sampling, beyond_why }
 }
 
 /// How the verdicts of a check stand.
 pub fn standing(joined: &Joined, check: &Check) -> Sampling {
+    let still: Vec<PartIx> = check.held.iter().copied().chain(check.fixed).collect();
     if joined.patches.len() > MOST_PATCHES {
-        let (rigid, translation_standing) = (not_measured(joined), not_measured(joined));
+        let rigid = not_measured(joined, Freedom::Rigid, &check.rigid, &still);
+        let translation_standing = not_measured(joined, Freedom::Translation, &check.translation, &still);
         return Sampling { rigid, translation_standing, chord_error: None, chord_distance: None };
     }
-    let still: Vec<PartIx> = check.held.iter().copied().chain(check.fixed).collect();
     let ground = Ground::new(joined, still);
     let largest = match joined.origin {
         Origin::Woven(_) => chord::largest(&ground.errors),
@@ -110,7 +122,9 @@ impl Ground<'_> {
     fn new(joined: &Joined, still: Vec<PartIx>) -> Ground<'_> {
         let errors = match &joined.origin {
             Origin::Woven(woven) => chord::errors(woven, &joined.patches),
-            Origin::Meshes => joined.known.iter().map(|&angle| ChordError { angle, distance: 0.0 }).collect(),
+            Origin::Meshes => {
+                joined.slack.iter().map(|s| ChordError { angle: s.angle, distance: s.distance }).collect()
+            }
         };
         Ground { joined, still, errors }
     }
@@ -147,23 +161,18 @@ impl Ground<'_> {
 
     fn locked(&self, of: &Weighed, stress: &Stress) -> Standing {
         let speeds = margin::speeds(&of.rows, &of.unknowns);
-        let bound = margin::lock(&of.weighted(speeds.clone()), stress, margin::PROGRAMS);
+        let bound = margin::lock(&of.weighted(speeds), stress, Effort::Programs);
+        let few = bound.as_ref().map(|b| b.lower).filter(|l| l.is_finite());
         let margin = Margin {
             norm: NORM.into(),
-            lower: bound.as_ref().map(|b| b.lower).filter(|l| l.is_finite()),
+            lower: few.into_iter().chain(margin::of_many(stress, &of.unknowns)).reduce(f64::max),
             upper: bound.as_ref().and_then(|b| margin::shown(&of.rows, &of.unknowns, &b.near)),
         };
-        let (beyond_sampling, beyond_why) = self.lock_beyond(of, stress, &speeds, &margin);
+        let (beyond_sampling, beyond_why) = self.lock_beyond(of, stress, &margin);
         Standing { margin: Some(margin), beyond_sampling, beyond_why }
     }
 
-    fn lock_beyond(
-        &self,
-        of: &Weighed,
-        stress: &Stress,
-        speeds: &[f64],
-        margin: &Margin,
-    ) -> (Beyond, String) {
+    fn lock_beyond(&self, of: &Weighed, stress: &Stress, margin: &Margin) -> (Beyond, String) {
         let most = chord::largest(&of.errors);
         if of.unknowns.count == 0 || most.angle == 0.0 {
             return (Beyond::Holds, "the facets are parts of the true surfaces".into());
@@ -172,13 +181,20 @@ impl Ground<'_> {
             Origin::Woven(_) => "the facets' errors",
             Origin::Meshes => "what the files' digits leave open",
         };
-        // Turning by an angle moves a unit normal by less; a point elsewhere moves with the rate of turning.
-        let turnings = margin::turnings(&of.rows, &of.unknowns);
-        let change = of.errors.iter().zip(speeds).zip(&turnings);
-        let change: Vec<f64> =
-            change.map(|((e, v), w)| e.angle * (v + e.distance * w) + e.distance * w).collect();
-        let survives = change.iter().all(|c| c.is_finite())
-            && margin::lock(&of.weighted(change), stress, 0).is_some_and(|b| b.lower > 1.0);
+        let slack: Vec<Slack> =
+            of.errors.iter().map(|e| Slack { angle: e.angle, distance: e.distance }).collect();
+        let survives = match self.joined.origin {
+            Origin::Meshes => {
+                matches!(digits::within(&of.rows, &of.unknowns, &slack, stress), Within::Survives)
+            }
+            // Facets err by so much that more effort is in vain where the plain bound falls.
+            Origin::Woven(_) => {
+                let change = digits::changes(&of.rows, &of.unknowns, &slack);
+                change.iter().all(|c| c.is_finite())
+                    && margin::lock(&of.weighted(change), stress, Effort::Plain)
+                        .is_some_and(|b| b.lower > 1.0)
+            }
+        };
         if survives {
             return (Beyond::Holds, format!("the lock survives every change of the contacts within {what}"));
         }

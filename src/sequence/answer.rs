@@ -5,6 +5,7 @@ use super::field::{Field, Set};
 use super::gap::least_gap;
 use super::give::Giving;
 use super::journey::{self, Leg, written};
+use super::lattice::answer::Counted;
 use super::motion::{Ends, Motion, Shift};
 use crate::assembly::PartIx;
 use crate::blocking::shadow::View;
@@ -138,6 +139,9 @@ pub struct Plan<C> {
     pub searched: Searched,
     /// Depth, in model units, up to which an overlap counted as touching.
     pub touch: f64,
+    /// Moves along the axes of a lattice, where the plan was made on one.
+    #[serde(flatten, default, skip_serializing_if = "Option::is_none")]
+    pub counted: Option<Counted>,
 }
 
 /// Share of the moved parts' extent along the direction that a move goes beyond being clear: enough to be seen and to

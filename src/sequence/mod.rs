@@ -16,6 +16,7 @@ mod gap;
 mod give;
 pub mod group;
 mod journey;
+pub mod lattice;
 pub mod leave;
 mod motion;
 mod singles;
@@ -89,7 +90,7 @@ pub fn plan_by<C>(
         _ => Outcome::NotFound,
     };
     let touch = Touch::of(asm).depth();
-    Ok(Plan { outcome, order: Order::Disassembly, steps, stuck, searched, touch })
+    Ok(Plan { outcome, order: Order::Disassembly, steps, stuck, searched, touch, counted: None })
 }
 
 /// A plan in the making.

@@ -29,7 +29,7 @@ pub fn meshes<'t>(reader: &mut Reader<'t>, root: &Fields<'t>, parts: &Field<'t>)
     let parts = items.and_then(|items| all_parts(reader, parts, &items));
     let tolerance = tolerance(reader, root);
     let unit = unit(reader, root);
-    Some(MeshSpec { parts: parts?, tolerance_mm: tolerance?, mm_per_unit: unit? })
+    Some(MeshSpec { parts: parts?, tolerance_mm: tolerance?, mm_per_unit: unit?, puzzle: None })
 }
 
 fn all_parts<'t>(

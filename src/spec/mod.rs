@@ -7,6 +7,7 @@ mod json;
 mod meshes;
 mod pieces;
 mod points;
+pub mod puzzle;
 mod read;
 mod reader;
 pub mod shape;
@@ -157,6 +158,8 @@ pub struct MeshSpec {
     /// Distance within which two faces count as touching.
     pub tolerance_mm: f64,
     pub mm_per_unit: f64,
+    /// Parts of voxels instead of parts from files: a puzzle, whose file holds them.
+    pub puzzle: Option<Box<puzzle::Puzzle>>,
 }
 
 #[derive(Clone, Debug)]

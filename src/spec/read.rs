@@ -2,6 +2,7 @@
 //!
 //! Not promised: that a fault is not followed by others that vanish with it.
 
+use super::puzzle::{self, Choice};
 use super::reader::{Field, Fields, Reader};
 use super::tree::{SyntaxFault, Table};
 use super::{FabSpec, Spec, Subject, json, meshes, tree, woven};
@@ -15,13 +16,19 @@ use std::path::Path;
 pub enum Syntax {
     Toml,
     Json,
+    /// XML of a puzzle file; the keys are its own.
+    Puzzle,
 }
 
 impl Syntax {
-    /// JSON where the file's name ends in `.json` or its text begins with a brace (no TOML does), else TOML.
+    /// A puzzle where the file's name ends in `.xmpuzzle` or its text begins with `<`, JSON where it ends in `.json` or
+    /// begins with a brace (no TOML begins with either), else TOML.
     pub fn of(file: &Path, text: &str) -> Syntax {
-        let named = file.extension().is_some_and(|end| end.eq_ignore_ascii_case("json"));
-        if named || text.trim_start_matches('\u{feff}').trim_start().starts_with('{') {
+        let ends = |end: &str| file.extension().is_some_and(|e| e.eq_ignore_ascii_case(end));
+        let text = text.trim_start_matches('\u{feff}').trim_start();
+        if ends("xmpuzzle") || text.starts_with('<') {
+            Syntax::Puzzle
+        } else if ends("json") || text.starts_with('{') {
             Syntax::Json
         } else {
             Syntax::Toml
@@ -30,7 +37,8 @@ impl Syntax {
 
     fn tree(self, text: &str) -> (Table, Vec<SyntaxFault>) {
         match self {
-            Syntax::Toml => tree::toml(text),
+            // A puzzle never gets here: `parse` reads it.
+            Syntax::Toml | Syntax::Puzzle => tree::toml(text),
             Syntax::Json => json::json(text)
                 .map_or_else(|fault| (Table::default(), vec![fault]), |table| (table, Vec::new())),
         }
@@ -39,6 +47,9 @@ impl Syntax {
 
 /// Reads a spec file.
 pub fn read(path: &Path) -> Result<Spec, Faults> {
+    if puzzle::is_named(path) {
+        return puzzle::parse(&puzzle::read_text(path)?, path, Choice::default());
+    }
     let text = input::text(input::bytes(path)?, path)?;
     parse(&text, path, Syntax::of(path, &text))
 }
@@ -46,6 +57,9 @@ pub fn read(path: &Path) -> Result<Spec, Faults> {
 /// Reads a spec's text; `file` names it in faults, and the files that it names are relative to the folder of `file`.
 pub fn parse(text: &str, file: &Path, syntax: Syntax) -> Result<Spec, Faults> {
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+    if syntax == Syntax::Puzzle {
+        return puzzle::parse(text, file, Choice::default());
+    }
     let (table, faults) = syntax.tree(text);
     let mut reader = Reader::new(text, file.to_path_buf(), faults);
     let root = reader.root(&table);

@@ -4,7 +4,7 @@
 //! against the parts' vertices. Not checked: that sets called unproven are stuck (nothing is claimed of them), nor that
 //! larger minimal sets are all there.
 
-use super::{Proofs, Verified, as_made, locked_alone, parts, plan, rebuild, same, sealed, verified};
+use super::{Proofs, Verified, as_made, digits, locked_alone, parts, plan, rebuild, same, sealed, verified};
 use crate::assembly::{Assembly, PartIx};
 use crate::contact::Joined;
 use crate::fault::Faults;
@@ -53,6 +53,9 @@ fn check(joined: &Joined, a: &FlexAnswer, within: f64) -> Result<Proofs, String>
     for core in &a.cores {
         let name = core.parts.join(", ");
         let shown = locked_alone(joined, &core.parts, &core.certificate)
+            .and_then(|shown| {
+                digits::holds(joined, &parts(joined, &core.parts)?, &core.certificate).map(|()| shown)
+            })
             .map_err(|why| format!("core {name}: {why}"))?;
         proofs.insert(name, shown);
     }

@@ -4,11 +4,11 @@
 //! checked, since no witness can carry it: that no other key or core is there, and that none is smaller.
 
 use super::certificate::{self, About};
-use super::{locked_alone, parts};
+use super::{digits, locked_alone, parts, same};
 use crate::assembly::PartIx;
 use crate::contact::Joined;
 use crate::report::answer::{
-    CheckAnswer, DirectionsAnswer, InterlockAnswer, InterlockWord, KeyAnswer, LockedCore, Proof, Word,
+    self, CheckAnswer, DirectionsAnswer, InterlockAnswer, InterlockWord, KeyAnswer, LockedCore, Proof, Word,
 };
 use glam::DVec3;
 use std::collections::BTreeSet;
@@ -40,7 +40,8 @@ pub fn claims(joined: &Joined, a: &CheckAnswer) -> Checked {
     };
     for c in i.cores.iter().filter(|c| !whole(c)) {
         locked_alone(joined, &c.parts, &c.certificate)
-            .map(drop)
+            .and_then(|_| digits::firm(joined, &parts(joined, &c.parts)?, &c.certificate))
+            .and_then(|firm| same("within the digits", &c.within_digits, &answer::firm(firm)))
             .map_err(|why| format!("core {}: {why}", c.parts.join(", ")))?;
     }
     Ok(())

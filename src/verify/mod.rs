@@ -4,15 +4,18 @@
 //! Not promised: that the spec is the one its reader meant.
 
 pub mod certificate;
+mod digits;
 mod dyadic;
 mod field;
 mod flex;
+pub mod follow;
 mod interlock;
 mod mend;
 mod motion;
 mod number;
 mod order;
 pub mod plan;
+mod release;
 mod repeats;
 mod singular;
 mod stress;
@@ -20,7 +23,9 @@ mod stress;
 use crate::assembly::{Assembly, PartIx};
 use crate::contact::{self, Joined};
 use crate::fault::Faults;
+use crate::locking::Freedom;
 use crate::report::answer::{self, CheckAnswer, PlanAnswer, Sealed};
+use crate::sampling::known;
 use crate::sequence::Outcome;
 use crate::sequence::clearance::with_clearance;
 use crate::spec::{self, Syntax};
@@ -56,6 +61,7 @@ pub fn answer(sealed: &Sealed) -> Result<Verified, Faults> {
         }
         Sealed::Flex(a) => flex::answer(a),
         Sealed::Repeats(a) => repeats::answer(a),
+        Sealed::Release(a) => release::answer(a),
     }
 }
 
@@ -106,10 +112,22 @@ fn check(spec: &spec::Spec, joined: &Joined, a: &CheckAnswer) -> Result<Proofs, 
     let translation =
         certificate::proof(asm, &joined.patches, &a.translation_proof, &still, About::Translations)
             .map_err(|why| format!("translations: {why}"))?;
+    within_digits(joined, a)?;
     sampling(joined, a)?;
     levels(spec, a)?;
     interlock::claims(joined, a)?;
     Ok(BTreeMap::from([("rigid".into(), rigid), ("translation".into(), translation)]))
+}
+
+/// A lock that the files' digits are found to leave open is none.
+fn within_digits(joined: &Joined, a: &CheckAnswer) -> Result<(), String> {
+    let check = answer::check_of(&joined.assembly, a).ok_or("the answer names parts that are not there")?;
+    let still: Vec<PartIx> = check.held.iter().copied().chain(check.fixed).collect();
+    for (freedom, verdict) in [(Freedom::Rigid, check.rigid), (Freedom::Translation, check.translation)] {
+        let word = verdict.word();
+        same("verdict within the files' digits", word, known(joined, &still, freedom, verdict).word())?;
+    }
+    Ok(())
 }
 
 /// Margins and chord errors are computed again, by the code that they came from: a change is noticed, and no more.
@@ -146,10 +164,14 @@ fn plan(joined: &Joined, a: &PlanAnswer) -> Result<Proofs, String> {
         }
         plan::Checked::Undecided { why } => return Err(format!("could not be decided: {why}")),
     }
+    if let Some(claimed) = &a.plan.counted {
+        plan::counted(&a.plan.steps, &a.of, claimed)?;
+    }
     for stuck in &a.plan.stuck {
         if let Some(lock) = &stuck.lock {
             same("clearance of a lock", a.clearance_mm, 0.0)?;
             proofs.insert(stuck.parts.join(", "), locked_alone(joined, &stuck.parts, lock)?);
+            digits::holds(joined, &self::parts(joined, &stuck.parts)?, lock)?;
         }
     }
     let proven = a.plan.stuck.iter().any(|s| s.lock.is_some());

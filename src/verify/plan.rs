@@ -8,12 +8,14 @@
 mod apart;
 mod book;
 mod cells;
+mod level;
 mod lp;
 mod sweep;
 mod turn;
 mod walk;
 mod way;
 
+pub use level::counted;
 pub use way::{Ball, Gap, Way, by_faces, by_program, gap};
 
 use crate::assembly::{Assembly, PartIx};

@@ -205,7 +205,7 @@ fn all_overlapping_pairs_are_named_with_their_depths() {
 }
 
 /// The assembly as it stands, to be written anew.
-fn remade(a: &Assembly, want: [&'static str; 2]) -> Made {
+pub fn remade(a: &Assembly, want: [&'static str; 2]) -> Made {
     let part = |p: PartIx| {
         let faces = a.solid(p).facets.iter().map(|f| f.corners.iter().map(|&i| i as usize).collect());
         let poly = Poly { points: a.vertices(p).collect(), faces: faces.collect() };

@@ -31,6 +31,7 @@ fn plan(steps: Vec<Step>) -> Plan<()> {
         stuck: vec![],
         searched: Searched::default(),
         touch: 0.0,
+        counted: None,
     }
 }
 

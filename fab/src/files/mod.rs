@@ -3,6 +3,7 @@
 //! Not promised: that several renames are one; a machine that stops between two of them leaves some of the files.
 
 pub mod obj;
+pub mod stale;
 pub mod stl;
 
 use std::collections::BTreeSet;
@@ -43,6 +44,8 @@ pub struct Batch {
     /// Folders that were made for this batch, outermost first.
     made: Vec<PathBuf>,
     staged: Vec<(PathBuf, PathBuf)>,
+    /// Whoever finds it locked leaves the staged files alone.
+    mark: Option<stale::Mark>,
 }
 
 impl Batch {
@@ -53,13 +56,15 @@ impl Batch {
             .take_while(|p| !p.as_os_str().is_empty() && !p.exists())
             .map(Path::to_path_buf)
             .collect();
-        let batch =
-            Batch { folder: folder.to_path_buf(), made: made.into_iter().rev().collect(), staged: vec![] };
+        let made = made.into_iter().rev().collect();
+        let mut batch = Batch { folder: folder.to_path_buf(), made, staged: vec![], mark: None };
         fs::create_dir_all(folder).map_err(|cause| FileError {
             action: "make folder",
             path: folder.to_path_buf(),
             cause,
         })?;
+        stale::clear(folder);
+        batch.mark = stale::mark(folder);
         Ok(batch)
     }
 
@@ -112,6 +117,7 @@ impl Drop for Batch {
         for (beside, _) in &self.staged {
             let _ = fs::remove_file(beside);
         }
+        drop(self.mark.take());
         for folder in self.made.iter().rev() {
             let _ = fs::remove_dir(folder);
         }

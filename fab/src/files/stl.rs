@@ -3,6 +3,8 @@
 //! STL keeps f32 and repeats each corner: vertices are snapped first, and corners are one vertex again where their bits
 //! are equal. It has no unit, so the name says `mm`.
 
+use crate::bvh::Bvh;
+use crate::cross;
 use crate::mesh::{Closure, Mesh};
 use crate::solid::Solid;
 use glam::DVec3;
@@ -21,12 +23,40 @@ pub fn snapped(mesh: &Mesh) -> Mesh {
     united(mesh.vertices.iter().map(snap).collect(), mesh.triangles.iter().copied())
 }
 
-/// The solid as STL can hold it and closed: detail that f32 can not hold apart is united, beginning at `FINEST` snaps and
-/// doubling until the file closes; and the size of that detail in mm. `None` where `COARSEST` does not do.
+/// The solid as STL can hold it, of the same shape, closed and without triangles that cross or have no area: detail that
+/// f32 can not hold apart is united, beginning at `FINEST` snaps and doubling until the file is so; and the size of that
+/// detail in mm. Where none up to `COARSEST` does, the first that is closed, though other kernels may refuse it; else
+/// `None`.
 pub fn settled(solid: &Solid) -> Option<(Mesh, f64)> {
-    let mut tries =
-        details(&solid.mesh()).map(|size| (mended(snapped(&solid.plain(size).mesh()), size), size));
-    tries.find(|(mesh, _)| mesh.closure() == Closure::Closed)
+    let whole = solid.mesh();
+    let finest = details(&whole).next().unwrap_or(COARSEST);
+    let as_it_is = std::iter::once_with(|| (mended(snapped(&whole), finest), finest));
+    let united = details(&whole).map(|size| (mended(snapped(&solid.plain(size).mesh()), size), size));
+    let mut closed = None;
+    for (mesh, size) in as_it_is.chain(united).filter(|(mesh, _)| mesh.closure() == Closure::Closed) {
+        if !same(solid, &mesh, size) {
+            continue;
+        }
+        if plain(&mesh) {
+            return Some((mesh, size));
+        }
+        closed.get_or_insert((mesh, size));
+    }
+    closed
+}
+
+/// Larger meshes are not looked through for crossings: it would take longer than to make them.
+const CROSSINGS_UP_TO: usize = 200_000;
+
+/// Whether uniting detail has left the shape alone: what only one of both has is a skin of that thickness at most.
+fn same(solid: &Solid, mesh: &Mesh, size: f64) -> bool {
+    let apart = |other: Solid| solid.minus(&other).volume() + other.minus(solid).volume();
+    Solid::of(mesh).is_ok_and(|other| apart(other) <= size * mesh.area())
+}
+
+/// Whether no triangles cross; one without area counts as crossing its neighbours.
+fn plain(mesh: &Mesh) -> bool {
+    mesh.triangles.len() > CROSSINGS_UP_TO || cross::within(mesh, &Bvh::new(mesh)).is_empty()
 }
 
 /// Sizes of detail to do without, in mm: from `FINEST` snaps of the mesh, doubling up to `COARSEST`.

@@ -5,6 +5,7 @@
 use crate::bvh::Bvh;
 use crate::mesh::Mesh;
 use crate::mold::figures::Figures;
+use crate::mold::frame::upright;
 use crate::mold::plan::Plan;
 use crate::mold::ray;
 use crate::mold::rigid::{KEY_TIP, Tools};
@@ -25,6 +26,14 @@ fn volume_round_off(surface: f64, snap: f64) -> f64 {
 pub struct Halves<'a> {
     pub lower: &'a Mesh,
     pub upper: &'a Mesh,
+    /// Side cores with their pulls, in the order in which they leave.
+    pub cores: Vec<(&'a Mesh, DVec3)>,
+}
+
+impl<'a> Halves<'a> {
+    fn all(&self) -> Vec<&'a Mesh> {
+        self.cores.iter().map(|c| c.0).chain([self.lower, self.upper]).collect()
+    }
 }
 
 /// All measurements of a rigid mold.
@@ -41,7 +50,7 @@ pub fn rigid(mold: &Mold, h: &Halves) -> Result<Vec<Measured>, NotSolid> {
 pub fn silicone(mold: &Mold, board: &Mesh) -> Result<Vec<Measured>, NotSolid> {
     let [lower, upper] = silicone::pours(&Solid::of(board)?, &mold.plan, &mold.figures)?;
     let (lower, upper) = (lower.mesh(), upper.mesh());
-    let h = Halves { lower: &lower, upper: &upper };
+    let h = Halves { lower: &lower, upper: &upper, cores: vec![] };
     let mut all = volumes(mold, &h, &Tools::of(&mold.plan, &mold.figures)?)?;
     all.extend(channels(mold, &h));
     all.push(one_way(&mold.plan, &mold.figures));
@@ -49,20 +58,25 @@ pub fn silicone(mold: &Mold, board: &Mesh) -> Result<Vec<Measured>, NotSolid> {
 }
 
 fn volumes(mold: &Mold, h: &Halves, tools: &Tools) -> Result<Vec<Measured>, NotSolid> {
-    let (lower, upper, part) = (Solid::of(h.lower)?, Solid::of(h.upper)?, Solid::of(&mold.part)?);
+    let part = Solid::of(&mold.part)?;
+    let pieces = h.all().into_iter().map(Solid::of).collect::<Result<Vec<_>, _>>()?;
     let block = Solid::of(&cuboid(mold.plan.low, mold.plan.high))?;
     let air = Solid::all(vec![tools.sockets.clone(), tools.above.clone(), tools.bolts.clone()]);
-    let inside = block.minus(&lower).minus(&upper).minus(&air);
+    let matter = Solid::all(pieces.clone());
+    let inside = block.minus(&matter).minus(&air);
     let cavity = inside.volume() + part.common(&air).volume();
-    let (volume, area) = (part.volume(), h.lower.area() + h.upper.area() + mold.part.area());
-    let share = (cavity - volume).abs() / volume;
-    let channels = block.common(&air).minus(&part).minus(&lower).volume();
-    let sum = lower.volume() + upper.volume() + volume + channels;
-    let allowed = volume_round_off(area, mold.snap) + CAVITY_SHARE * volume;
+    let area = h.all().iter().map(|m| m.area()).sum::<f64>() + mold.part.area();
+    let (volume, round_off) = (part.volume(), volume_round_off(area, mold.snap));
+    let channels = block.common(&air).minus(&part).minus(&matter).volume();
+    let filled: f64 = pieces.iter().map(|p| p.common(&block).volume()).sum();
+    let overlaps = (0..pieces.len())
+        .flat_map(|i| (0..i).map(move |j| (i, j)))
+        .map(|(i, j)| pieces[i].common(&pieces[j]).volume());
+    let why = "round-off of the files: surface times one snap";
     Ok(vec![
         Measured::at_most(
             "cavity against part",
-            share * 100.0,
+            (cavity - volume).abs() / volume * 100.0,
             CAVITY_SHARE * 100.0,
             "%",
             "0.01 % of the part's volume",
@@ -74,68 +88,80 @@ fn volumes(mold: &Mold, h: &Halves, tools: &Tools) -> Result<Vec<Measured>, NotS
             "%",
             "0.01 % of the part's volume, and round-off",
         ),
+        Measured::at_most("overlap of the pieces", overlaps.sum(), round_off, "mm3", why),
         Measured::at_most(
-            "overlap of the halves",
-            lower.common(&upper).volume(),
-            volume_round_off(area, mold.snap),
+            "what the pieces share with the part",
+            pieces.iter().map(|p| p.common(&part).volume()).sum(),
+            round_off,
             "mm3",
-            "round-off of the files: surface times one snap",
+            why,
         ),
         Measured::at_most(
-            "what the halves share with the part",
-            lower.common(&part).volume() + upper.common(&part).volume(),
-            volume_round_off(area, mold.snap),
-            "mm3",
-            "round-off of the files: surface times one snap",
-        ),
-        Measured::at_most(
-            "halves, part and channels against the block",
-            (sum - block.volume()).abs(),
-            allowed,
+            "pieces, part and channels against the block",
+            (filled + volume + channels - block.volume()).abs(),
+            round_off + CAVITY_SHARE * volume,
             "mm3",
             "round-off of the files, and 0.01 % of the cavity",
         ),
     ])
 }
 
-fn turned_over(m: &Mesh) -> Mesh {
-    m.map(|v| DVec3::new(v.x, -v.y, -v.z))
-}
-
-/// Each half moved out along its pull, without end: what of the part and of the other half it would hit. That they share
-/// nothing to begin with is measured by `volumes`.
+/// Each piece moved out along its pull, without end, in the order in which they leave: what of the part and of the pieces
+/// still there it would hit. That they share nothing to begin with is measured by `volumes`.
 fn sweeps(mold: &Mold, h: &Halves) -> Vec<Measured> {
-    let hits = |name: &str, mover: &Mesh, still: &Mesh| {
-        let b = shadow::blocked(&Side::of(mover, 1.0), &Side::of(still, -1.0), mold.snap);
-        let width = if b.area > 0.0 { shadow::reach(&b, b.strip) } else { 0.0 };
-        Measured::at_most(
-            name,
-            width,
-            b.strip * 2.0,
-            "mm",
-            "round-off of the files: the widest strip that a snap of each corner makes",
-        )
-    };
-    let [lower, part] = [h.lower, &mold.part].map(turned_over);
-    let mut all = vec![
-        hits("upper half leaves the part: width that it hits", h.upper, &mold.part),
-        hits("lower half leaves the part: width that it hits", &lower, &part),
-        hits("upper half leaves the lower: width that it hits", h.upper, h.lower),
-    ];
-    if mold.filled_mm3.is_none() {
-        let why = "undercut that still snaps out of a rigid mold";
-        for m in &mut all[..2] {
-            *m = Measured::at_most(m.of.clone(), m.value, mold.figures.snap.value, "mm", why);
-        }
+    let mut all = Vec::new();
+    for (k, (core, pull)) in h.cores.iter().enumerate() {
+        let rest: Vec<&Mesh> = h.cores[k + 1..].iter().map(|c| c.0).chain([h.lower, h.upper]).collect();
+        let name = core_name(k);
+        all.push(hits(mold, format!("{name} leaves the part"), core, &[&mold.part], *pull));
+        all.push(hits(mold, format!("{name} leaves the rest of the mold"), core, &rest, *pull));
     }
+    let parts = [("upper half", h.upper, DVec3::Z), ("lower half", h.lower, DVec3::NEG_Z)];
+    for (name, half, pull) in parts {
+        let mut of_part = hits(mold, format!("{name} leaves the part"), half, &[&mold.part], pull);
+        if mold.filled_mm3.is_none() {
+            let why = "undercut that still snaps out of a rigid mold";
+            of_part = Measured::at_most(of_part.of, of_part.value, mold.figures.snap.value, "mm", why);
+        }
+        all.push(of_part);
+    }
+    all.push(hits(mold, "upper half leaves the lower".into(), h.upper, &[h.lower], DVec3::Z));
     all
 }
 
+/// The name of a side core, from the first that leaves.
+pub fn core_name(k: usize) -> String {
+    format!("core-{}", k + 1)
+}
+
+/// The widest strip of what stands still that a piece would hit on its way.
+fn hits(mold: &Mold, what: String, mover: &Mesh, still: &[&Mesh], pull: DVec3) -> Measured {
+    let turn = upright(pull);
+    let turned = |m: &Mesh| m.map(|v| turn * v);
+    let mover = turned(mover);
+    let lead = Side::of(&mover, 1.0);
+    let (mut width, mut strip) = (0.0f64, 0.0f64);
+    for s in still {
+        let b = shadow::blocked(&lead, &Side::of(&turned(s), -1.0), mold.snap);
+        strip = strip.max(b.strip);
+        width = width.max(if b.area > 0.0 { shadow::reach(&b, b.strip) } else { 0.0 });
+    }
+    Measured::at_most(
+        format!("{what}: width that it hits"),
+        width,
+        strip * 2.0,
+        "mm",
+        "round-off of the files: the widest strip that a snap of each corner makes",
+    )
+}
+
 fn channels(mold: &Mold, h: &Halves) -> Vec<Measured> {
-    let trees = [h.lower, h.upper].map(|m| (m, Bvh::new(m)));
+    let trees: Vec<(&Mesh, Bvh)> = h.all().into_iter().map(|m| (m, Bvh::new(m))).collect();
     let all = || mold.plan.sprues.iter().chain(&mold.plan.vents);
     let shut = all()
-        .filter(|c| trees.iter().any(|(m, t)| ray::any((m, t), c.foot, DVec3::Z, FLOOR_IN_SNAPS * mold.snap)))
+        .filter(|c| {
+            trees.iter().any(|(m, t)| ray::any((*m, t), c.foot, DVec3::Z, FLOOR_IN_SNAPS * mold.snap))
+        })
         .count();
     let reaches = all().filter(|c| c.foot.z + c.height < mold.plan.high.z - mold.snap).count();
     let airless = mold.tops.iter().filter(|t| !vented(mold, t)).count();

@@ -48,9 +48,38 @@ pub fn framed(part: &Mesh, pull: DVec3) -> Framed {
     };
     let (lo, hi) = part.map(|v| turn * v).bounds();
     let shift = -((lo + hi) / 2.0).with_z(lo.z);
-    let mesh = stl::snapped(&part.map(|v| turn * v + shift));
+    let (mesh, snap) = settled(&part.map(|v| turn * v + shift));
+    Framed { mesh, turn, shift, snap }
+}
+
+/// Coordinates within this many snaps become one: what should lie in one plane of the frame then does, and no boolean
+/// leaves a sliver of round-off beside it.
+const SAME_IN_SNAPS: f64 = 2.0;
+
+/// The mesh in f32, equal coordinates made equal, and how far a coordinate may be off by both, mm.
+pub fn settled(mesh: &Mesh) -> (Mesh, f64) {
     let (lo, hi) = mesh.bounds();
-    Framed { mesh, turn, shift, snap: stl::snap_distance(lo.abs().max(hi.abs()).max_element()) }
+    let snap = stl::snap_distance(lo.abs().max(hi.abs()).max_element());
+    let mut meshes = [stl::snapped(mesh)];
+    aligned(&mut meshes, SAME_IN_SNAPS * snap);
+    (stl::snapped(&meshes[0]), snap * (1.0 + SAME_IN_SNAPS))
+}
+
+/// Makes coordinates of all meshes that differ by at most `within` mm one.
+pub fn aligned(meshes: &mut [Mesh], within: f64) {
+    for axis in 0..3 {
+        let mut all: Vec<&mut f64> =
+            meshes.iter_mut().flat_map(|m| &mut m.vertices).map(|v| &mut v[axis]).collect();
+        all.sort_by(|a, b| a.total_cmp(b));
+        let mut first = f64::NEG_INFINITY;
+        for here in all {
+            if *here - first <= within {
+                *here = first;
+            } else {
+                first = *here;
+            }
+        }
+    }
 }
 
 /// The angle of the hull edge that lies along the smallest rectangle around the hull.
@@ -91,6 +120,16 @@ pub fn hull(mut points: Vec<DVec2>) -> Vec<DVec2> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn coordinates_that_are_nearly_one_become_one() {
+        let box_of = |x: f64| crate::solid::cuboid(DVec3::ZERO, DVec3::new(x, 40.0, 50.0));
+        let mut m = box_of(30.0);
+        m.vertices[1].x += 2e-6;
+        let (settled, snap) = settled(&m);
+        assert_eq!(settled, box_of(30.0));
+        assert!(snap < 2e-5, "{snap}");
+    }
 
     #[test]
     fn the_pull_becomes_z_and_axes_stay_exact() {

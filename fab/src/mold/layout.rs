@@ -9,6 +9,7 @@ use crate::mold::figures::Figures;
 use crate::mold::plan::{Channel, Key, Plan};
 use crate::mold::ray;
 use crate::mold::tops::Top;
+use crate::solid::{NotSolid, Solid, cuboid, frustum};
 use glam::{DVec2, DVec3};
 
 /// Material left beside a key or screw, mm: two lines of a 0.4 mm nozzle on each side, and as much again.
@@ -89,6 +90,58 @@ pub fn plan(part: &Mesh, parting: f64, tops: &[Top], f: &Figures, a: Around) -> 
         sprues,
         vents,
     }
+}
+
+/// Places of a key along its side, shares of the side, in the order in which they are tried.
+const ALONG: [f64; 5] = [0.5, 0.3, 0.7, 0.2, 0.8];
+
+/// The plan with keys, screws and slots out of the way of side cores, and the channels that stand in the way of one.
+/// Keys keep to three sides; `one_way` of the checks tells whether they still fit one way only.
+pub fn clear(plan: &Plan, cores: &[Solid], f: &Figures, a: Around) -> Result<(Plan, usize), NotSolid> {
+    let hit = |s: &Mesh| -> Result<bool, NotSolid> {
+        let s = Solid::of(s)?;
+        Ok(cores.iter().any(|c| !c.common(&s).is_empty()))
+    };
+    let (low, high, up) = (plan.low, plan.high, plan.parting);
+    let upright = |at: DVec2, r: f64| frustum(at.extend(low.z), high.z - low.z, r, r);
+    let near_key = |k: &DVec2| {
+        let r = f.key_diameter.value / 2.0 + f.key_clearance.value + EDGE;
+        let reach = f.key_height.value + EDGE;
+        frustum(k.extend(up - reach), 2.0 * reach, r, r)
+    };
+    let inset = a.rim / 2.0;
+    let side = |k: usize, share: f64| match k {
+        0 => DVec2::new(low.x + inset, low.y + share * (high.y - low.y)),
+        1 => DVec2::new(high.x - inset, low.y + share * (high.y - low.y)),
+        _ => DVec2::new(low.x + share * (high.x - low.x), low.y + inset),
+    };
+    let mut keys = Vec::new();
+    for k in 0..3 {
+        for share in ALONG {
+            if !hit(&near_key(&side(k, share)))? {
+                keys.push(Key { at: side(k, share).extend(up) });
+                break;
+            }
+        }
+    }
+    let free = |s: &Mesh| hit(s).map(|h| !h);
+    let mut kept = Plan { keys, bolts: vec![], slots: vec![], ..plan.clone() };
+    for &b in &plan.bolts {
+        if free(&upright(b, f.bolt.value / 2.0 + EDGE))? {
+            kept.bolts.push(b);
+        }
+    }
+    for &s in &plan.slots {
+        if free(&cuboid(s.0, s.1))? {
+            kept.slots.push(s);
+        }
+    }
+    let mut shut = 0;
+    for c in plan.sprues.iter().chain(&plan.vents) {
+        let r = c.below.max(c.above) / 2.0;
+        shut += usize::from(hit(&frustum(c.foot + DVec3::Z * FOOT, c.height - FOOT, r, r))?);
+    }
+    Ok((kept, shut))
 }
 
 /// One in the middle of the side without a key, one beside the key across from it.

@@ -23,10 +23,10 @@ pub fn make(part: &Mesh, spec: &MoldSpec) -> Result<Mold, MoldError> {
         ));
     }
     if spec.surroundings.is_empty() {
-        return of_route(ready(part, spec)?, spec);
+        return of_route(part, spec);
     }
     let (hollow, measure) = surroundings::hollow(part, &spec.surroundings)?;
-    let mut mold = of_route(ready(&hollow, spec)?, spec)?;
+    let mut mold = of_route(&hollow, spec)?;
     mold.measured.push(measure);
     Ok(mold)
 }
@@ -34,9 +34,10 @@ pub fn make(part: &Mesh, spec: &MoldSpec) -> Result<Mold, MoldError> {
 /// Parts of one mold or tree: more fill no plate and no flask.
 const MOST: usize = 100;
 
-fn of_route(ready: Ready, spec: &MoldSpec) -> Result<Mold, MoldError> {
+fn of_route(part: &Mesh, spec: &MoldSpec) -> Result<Mold, MoldError> {
+    let ready = ready(part, spec)?;
     match spec.route {
-        Route::Rigid => two_part::mold(ready, spec),
+        Route::Rigid => two_part::mold(part, ready, spec),
         Route::Silicone => pour::mold(ready, spec),
         Route::LostWax => tree::mold(ready, spec),
     }
@@ -50,6 +51,12 @@ pub fn extra(mold: &mut Mold, ending: &str, text: impl Fn(&Mold) -> String) {
 /// Adds a solid as a file can hold it, or the finding that none can.
 pub fn push(mold: &mut Mold, name: &str, kind: Kind, solid: &Solid, pull: DVec3, copies: usize) {
     let (mesh, closed) = stl::settled(solid).map_or_else(|| (solid.mesh(), false), |(m, _)| (m, true));
+    if !closed && !kind.is_made() {
+        let what = format!("there is no OpenSCAD source: {name} has detail that f32 can not hold apart");
+        let found = finding(mold, Severity::Note, vec![], what, "the STL files are whole without it");
+        mold.findings.push(found);
+        return;
+    }
     let bodies = mesh.topology().bodies;
     mold.pieces.push(Piece { name: name.to_string(), kind, mesh, pull, copies });
     let mut say = |what: String| {
@@ -60,7 +67,7 @@ pub fn push(mold: &mut Mold, name: &str, kind: Kind, solid: &Solid, pull: DVec3,
     if !closed {
         say(format!("{name} has detail that f32 can not hold apart"));
     }
-    if bodies != 1 && kind != Kind::Below {
+    if bodies != 1 && kind.is_made() {
         say(format!("{name} is {bodies} bodies, not one"));
     }
 }

@@ -20,7 +20,7 @@ pub fn maps(part: &Mesh, parting: f64, blocked: &Blocked, snap: f64, least_draft
     };
     let low = (0..draft.len()).filter(|&t| draft[t] < least_draft).map(|t| area(part.corners(t)));
     Maps {
-        half: (0..draft.len()).map(half).collect(),
+        half: (0..draft.len()).map(|t| half(t).to_string()).collect(),
         undercut_mm2: real_area(part, blocked),
         low_draft_mm2: low.sum(),
         draft_deg: draft,

@@ -4,12 +4,14 @@
 //! Not promised: that a mold fills, freezes or releases as geometry says; friction, flow and heat are not modelled.
 
 pub mod checks;
+mod cores;
 pub mod figures;
 pub mod fill;
 pub mod frame;
 pub mod layout;
 mod make;
 mod maps;
+mod more_parts;
 pub mod parting;
 mod picture;
 mod pictures;
@@ -23,6 +25,7 @@ mod scad;
 pub mod shadow;
 mod silicone;
 mod surroundings;
+pub mod sweep;
 pub mod tops;
 mod tree;
 mod two_part;

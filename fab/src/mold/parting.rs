@@ -2,11 +2,12 @@
 //! stepped up and down to the silhouette.
 //!
 //! A plane at height c is exact: below c no facet looks up and above c none looks down, so that on every upright line
-//! the part is one stretch through c. The steps are upright walls under (or over) the silhouette: they have no draft.
+//! the part is one stretch through c. Steps lean by the draft that is asked for wherever the part is not in the way.
 
 use crate::bvh::Bvh;
 use crate::mesh::{Mesh, area};
-use crate::mold::fill::{into, prism};
+use crate::mold::layout::BEYOND;
+use crate::mold::sweep::{self, Footprint, Way};
 use crate::solid::{NotSolid, Solid, cuboid};
 use glam::DVec3;
 
@@ -86,55 +87,49 @@ fn wrong(part: &Mesh, looks: &[Look], height: f64) -> f64 {
 /// underside, and where the part is below it only down to the part's top. On every upright line it ends once, so the
 /// halves part along z. Exact for a part that is one stretch on every upright line.
 ///
-/// `fat`: how much wider the steps are on each side, mm. 0 for the mold itself; a little for a file that is read by
-/// itself, where steps that meet in an edge must not.
+/// `tan`: of the draft that steps have beside the part, so that the halves do not rub; above the part (for what is
+/// raised) and below it (for what is lowered) a step stays upright, since the other half has to leave there.
 pub fn below(
     block: (DVec3, DVec3),
     cavity: &Solid,
     plane: &Plane,
     snap: f64,
-    fat: f64,
+    tan: f64,
 ) -> Result<Solid, NotSolid> {
     let (lo, hi) = block;
     let half = Solid::of(&cuboid(lo, hi.with_z(plane.height)))?;
     if plane.wrong == 0.0 {
         return Ok(half);
     }
-    let other = Solid::of(&cuboid(lo.with_z(plane.height), hi))?;
     let mesh = cavity.mesh();
     let part = (&mesh, &Bvh::new(&mesh));
-    let wrong = |cut: &Solid, way: Look| -> Result<Solid, NotSolid> {
-        let columns = wrong_side(part, cut, way, plane.height, snap);
-        let solid = |c: &Mesh| if fat > 0.0 { Ok(fattened(c, fat)) } else { Solid::of(c) };
-        Ok(Solid::all(columns.iter().map(solid).collect::<Result<_, _>>()?))
+    let lid = hi.z + BEYOND;
+    let raised = step(part, Way::down(plane.height), [lo.z, lid], (snap, tan));
+    let lowered = step(part, Way::up(plane.height), [lid, lo.z - BEYOND], (snap, tan));
+    Ok(half.with(&raised).minus(&lowered))
+}
+
+/// What one half takes beyond the plane: columns from the facets that it forms there to `ends[0]`, and around them
+/// wedges, but for what lies behind the part, which leaves toward `ends[1]`.
+fn step((mesh, tree): (&Mesh, &Bvh), way: Way, ends: [f64; 2], (snap, tan): (f64, f64)) -> Solid {
+    let look_wanted = if way.sign > 0.0 { Look::Up } else { Look::Down };
+    let beyond_plane = |t: usize| {
+        let off = |v: DVec3| (way.level - v.z) * way.sign > WALL_IN_SNAPS * snap;
+        look(mesh, t, snap) == look_wanted && mesh.corners(t).into_iter().any(off)
     };
-    let raised = wrong(&cavity.common(&other), Look::Down)?;
-    let lowered = wrong(&cavity.common(&half), Look::Up)?;
-    Ok(half.minus(&lowered).with(&raised))
-}
-
-/// Columns between the plane and the facets that look the wrong way there, and on into the part.
-fn wrong_side(part: (&Mesh, &Bvh), cut: &Solid, way: Look, height: f64, snap: f64) -> Vec<Mesh> {
-    let mesh = cut.mesh();
-    let off_plane = |t: usize| mesh.corners(t).iter().any(|c| (c.z - height).abs() > WALL_IN_SNAPS * snap);
-    let wrong = (0..mesh.triangles.len()).filter(|&t| look(&mesh, t, snap) == way && off_plane(t));
-    wrong.map(|t| column(part, mesh.corners(t), height)).collect()
-}
-
-fn fattened(column: &Mesh, fat: f64) -> Solid {
-    let around = [DVec3::new(fat, fat, 0.0), DVec3::new(-fat, fat, 0.0)];
-    let corners = column.vertices.iter().flat_map(|v| around.into_iter().flat_map(|a| [*v + a, *v - a]));
-    Solid::hull(&corners.collect::<Vec<_>>())
-}
-
-fn column(part: (&Mesh, &Bvh), c: [DVec3; 3], height: f64) -> Mesh {
-    let onto = |c: [DVec3; 3]| c.map(|v| v.with_z(height)).to_vec();
-    let inner = |c: [DVec3; 3], way: f64| c.map(|v| v + DVec3::Z * into(part, v, way)).to_vec();
-    if (c[1] - c[0]).cross(c[2] - c[0]).z > 0.0 {
-        return prism(inner(c, -1.0), onto(c));
+    let chosen: Vec<bool> = (0..mesh.triangles.len()).map(beyond_plane).collect();
+    let columns = sweep::columns((mesh, tree), Way { level: ends[0], ..way }, |t| chosen[t]);
+    let wedges = sweep::wedges(mesh, way, ends[0], tan, |t| chosen[t]);
+    if wedges.is_empty() {
+        return columns;
     }
-    let c = [c[0], c[2], c[1]];
-    prism(onto(c), inner(c, 1.0))
+    let prints: Vec<Footprint> = wedges.iter().map(|w| Footprint::of(w.mesh().vertices)).collect();
+    let near = |t: usize| {
+        let own = Footprint::of(mesh.corners(t));
+        prints.iter().any(|p| p.meets(&own))
+    };
+    let behind = sweep::columns((mesh, tree), Way { sign: -way.sign, level: ends[1] }, near);
+    columns.with(&Solid::all(wedges).minus(&behind))
 }
 
 #[cfg(test)]

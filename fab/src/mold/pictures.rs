@@ -27,22 +27,36 @@ pub fn maps(mold: &Mold) -> Extra {
     Extra { name: format!("{}.draft.png", mold.name), bytes: png(&views, 20.0, 50.0) }
 }
 
-/// The halves opened: the upper one turned over beside the lower.
+/// The mold opened: the upper half turned over beside the lower, cores drawn out of the lower along their pulls.
 pub fn opened(mold: &Mold) -> Extra {
     let halves: Vec<&Piece> = mold.pieces.iter().filter(|p| p.kind == Kind::Half).collect();
     let over = halves[1].mesh.map(|v| DVec3::new(v.x, -v.y, -v.z));
     let wide = mold.plan.high - mold.plan.low;
+    let cores: Vec<&Piece> = mold.pieces.iter().filter(|p| p.kind == Kind::Core).collect();
+    let out = |p: &Piece| p.pull * (extent(p) + APART);
+    let aside = |k: usize| {
+        let far = |p: &&Piece| out(p)[k].abs() + if p.pull[k] != 0.0 { APART } else { 0.0 };
+        cores.iter().map(far).fold(APART, f64::max)
+    };
     let beside = if wide.x > wide.y {
-        DVec3::new(0.0, wide.y + 10.0, 0.0)
+        DVec3::new(0.0, wide.y + aside(1), 0.0)
     } else {
-        DVec3::new(wide.x + 10.0, 0.0, 0.0)
+        DVec3::new(wide.x + aside(0), 0.0, 0.0)
     };
     let level = DVec3::Z * (2.0 * mold.plan.parting);
-    let views = [
-        Painted { mesh: &halves[0].mesh, colours: vec![[150, 180, 210]], shift: DVec3::ZERO },
-        Painted { mesh: &over, colours: vec![[210, 180, 140]], shift: beside + level },
+    let mut views = vec![
+        Painted { mesh: &halves[0].mesh, colours: vec![COLOURS[0]], shift: DVec3::ZERO },
+        Painted { mesh: &over, colours: vec![COLOURS[1]], shift: beside + level },
     ];
+    views.extend(cores.iter().map(|p| Painted { mesh: &p.mesh, colours: vec![COLOURS[2]], shift: out(p) }));
     Extra { name: format!("{}.opened.png", mold.name), bytes: png(&views, 25.0, 50.0) }
+}
+
+/// Of a piece along its pull, mm.
+fn extent(p: &Piece) -> f64 {
+    let along = p.mesh.vertices.iter().map(|v| v.dot(p.pull));
+    let (lo, hi) = along.fold((f64::MAX, f64::MIN), |(l, h), x| (l.min(x), h.max(x)));
+    hi - lo
 }
 
 /// All prints side by side.

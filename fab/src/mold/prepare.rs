@@ -5,7 +5,7 @@ use crate::bvh::Bvh;
 use crate::cross;
 use crate::files::stl;
 use crate::mesh::{Closure, Mesh};
-use crate::mold::frame::{Framed, framed};
+use crate::mold::frame::{Framed, framed, settled};
 use crate::mold::parting::{self, Plane};
 use crate::mold::pull::{self, Candidate, Search};
 use crate::mold::shadow::{self, Blocked};
@@ -24,6 +24,8 @@ pub struct Ready {
     pub tops: Vec<Top>,
     /// What was mended in the mesh that came.
     pub mended: Option<String>,
+    /// Other pulls that leave little undercut, best first, well apart from this and from each other.
+    pub others: Vec<DVec3>,
 }
 
 pub fn unfit(what: impl Into<String>, hint: &str) -> MoldError {
@@ -116,25 +118,67 @@ fn uncrossed(part: &Mesh, solid: &Solid) -> Result<Checked, MoldError> {
 const SAME_DEPTH: f64 = 0.01;
 
 pub fn ready(part: &Mesh, spec: &MoldSpec) -> Result<Ready, MoldError> {
-    let Checked { mesh, mended } = checked(part)?;
-    let part = &mesh;
-    let search = match spec.pull.map(|d| d.try_normalize()) {
-        None => pull::search(part),
-        Some(Some(d)) => Search { best: vec![pull::measured(part, d)], looked_at: 1 },
-        Some(None) => {
-            return Err(unfit("the pull direction given has no length", "give three numbers, not all 0"));
+    let checked = checked(part)?;
+    let part = &checked.mesh;
+    match spec.pull.map(|d| d.try_normalize()) {
+        None => {
+            let search = pull::search(part);
+            let chosen =
+                plainest(part, &search).ok_or_else(|| unfit("no pull direction was found", "give one"))?;
+            let direction = better_end(part, chosen.direction, spec);
+            let others = others(part, &search, direction);
+            Ok(Ready { others, ..turned(&checked, spec, chosen, direction, search.looked_at)? })
         }
-    };
-    let chosen = plainest(part, &search).ok_or_else(|| unfit("no pull direction was found", "give one"))?;
-    let direction =
-        if spec.pull.is_some() { chosen.direction } else { better_end(part, chosen.direction, spec) };
-    let framed = gang(framed(part, direction), spec);
+        Some(Some(d)) => turned(&checked, spec, &pull::measured(part, d), d, 1),
+        Some(None) => Err(unfit("the pull direction given has no length", "give three numbers, not all 0")),
+    }
+}
+
+/// The part with this pull, at the end of it that leaves fewer high points.
+pub fn along(part: &Mesh, spec: &MoldSpec, pull: DVec3) -> Result<Ready, MoldError> {
+    let checked = checked(part)?;
+    let direction = better_end(&checked.mesh, pull, spec);
+    turned(&checked, spec, &pull::measured(&checked.mesh, pull), direction, 1)
+}
+
+fn turned(
+    checked: &Checked,
+    spec: &MoldSpec,
+    chosen: &Candidate,
+    direction: DVec3,
+    looked_at: usize,
+) -> Result<Ready, MoldError> {
+    let framed = gang(framed(&checked.mesh, direction), spec);
     let blocked = pull::undercut(&framed.mesh, framed.snap);
     let looks = parting::looks(&framed.mesh, framed.snap);
     let plane = parting::plane(&framed.mesh, &looks, framed.snap);
     let tops = tops(&framed.mesh, spec.figures.vent_prominence.value);
-    let pull = answer(&search, chosen, direction, &blocked, &framed);
-    Ok(Ready { solid: Solid::of(&framed.mesh)?, framed, pull, blocked, plane, tops, mended })
+    let pull = answer(looked_at, chosen, direction, &blocked, &framed);
+    let (solid, mended) = (Solid::of(&framed.mesh)?, checked.mended.clone());
+    Ok(Ready { solid, framed, pull, blocked, plane, tops, mended, others: vec![] })
+}
+
+/// Pulls nearer to each other than this (their dot product; 30 degrees) would need much the same cores.
+const MUCH_THE_SAME: f64 = 0.866;
+
+/// Pulls this near (half a degree) are one, though an upright wall makes much of the difference between two.
+const SAME_PULL: f64 = 0.99996;
+
+/// Other pulls that are worth a try with side cores.
+const OTHERS: usize = 4;
+
+/// First square to the largest faces, as people pull, then whatever leaves little undercut.
+fn others(part: &Mesh, search: &Search, chosen: DVec3) -> Vec<DVec3> {
+    let faces = pull::large_normals(part);
+    let mut kept = vec![chosen];
+    let mut keep = |d: DVec3, apart: f64, most: usize| {
+        if kept.len() <= most && kept.iter().all(|k| k.dot(d).abs() < apart) {
+            kept.push(d);
+        }
+    };
+    faces.iter().for_each(|d| keep(*d, SAME_PULL, OTHERS - 1));
+    search.best.iter().for_each(|c| keep(c.direction, MUCH_THE_SAME, OTHERS));
+    kept.split_off(1)
 }
 
 /// Among the directions with the least undercut and about the least depth, the one whose plane leaves least off it.
@@ -155,7 +199,13 @@ fn better_end(part: &Mesh, d: DVec3, spec: &MoldSpec) -> DVec3 {
     if count(-d) < count(d) { -d } else { d }
 }
 
-fn answer(search: &Search, chosen: &Candidate, direction: DVec3, blocked: &Blocked, framed: &Framed) -> Pull {
+fn answer(
+    looked_at: usize,
+    chosen: &Candidate,
+    direction: DVec3,
+    blocked: &Blocked,
+    framed: &Framed,
+) -> Pull {
     let search_words = "normals of the largest facets, their cross products, the axes, 160 directions over the half \
                         sphere; the best varied where an undercut is left";
     Pull {
@@ -163,7 +213,7 @@ fn answer(search: &Search, chosen: &Candidate, direction: DVec3, blocked: &Block
         undercut_mm2: chosen.undercut,
         undercut_reach_mm: if chosen.undercut > 0.0 { shadow::reach(blocked, REACH_STEP) } else { 0.0 },
         depth_mm: framed.mesh.bounds().1.z,
-        candidates: search.looked_at,
+        candidates: looked_at,
         search: search_words.to_string(),
     }
 }
@@ -188,8 +238,6 @@ fn gang(one: Framed, spec: &MoldSpec) -> Framed {
         mesh.vertices.extend(one.mesh.vertices.iter().map(|v| *v + by));
         mesh.triangles.extend(one.mesh.triangles.iter().map(|t| t.map(|v| v + first)));
     }
-    let mesh = stl::snapped(&mesh);
-    let (lo, hi) = mesh.bounds();
-    let snap = stl::snap_distance(lo.abs().max(hi.abs()).max_element());
+    let (mesh, snap) = settled(&mesh);
     Framed { mesh, snap, ..one }
 }

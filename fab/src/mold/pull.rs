@@ -59,7 +59,7 @@ const SAME_DIRECTION: f64 = 1.75e-3;
 const SAME_UNDERCUT: f64 = 1e-4;
 
 pub fn search(part: &Mesh) -> Search {
-    let (tree, samples) = (Bvh::new(part), samples(part));
+    let (tree, samples) = (Bvh::new(part), spread_over(part, SAMPLES));
     let mut looked_at = candidates(part);
     let rough = |d: &DVec3| (hidden(part, &tree, &samples, *d), depth(part, *d), *d);
     let mut rated: Vec<(usize, f64, DVec3)> = looked_at.par_iter().map(rough).collect();
@@ -124,13 +124,13 @@ fn depth(part: &Mesh, d: DVec3) -> f64 {
 }
 
 /// Points spread over the surface by area, with their normals; the same for the same mesh.
-fn samples(part: &Mesh) -> Vec<(DVec3, DVec3)> {
+pub fn spread_over(part: &Mesh, count: usize) -> Vec<(DVec3, DVec3)> {
     let areas: Vec<f64> = (0..part.triangles.len()).map(|t| area(part.corners(t))).collect();
-    let step = areas.iter().sum::<f64>() / SAMPLES as f64;
-    let (mut found, mut passed) = (Vec::with_capacity(SAMPLES), 0.0);
+    let step = areas.iter().sum::<f64>() / count as f64;
+    let (mut found, mut passed) = (Vec::with_capacity(count), 0.0);
     for (t, a) in areas.iter().enumerate() {
         passed += a;
-        while found.len() < SAMPLES && (found.len() as f64 + 0.5) * step < passed {
+        while found.len() < count && (found.len() as f64 + 0.5) * step < passed {
             found.push(within(part.corners(t), found.len()));
         }
     }
@@ -169,7 +169,8 @@ const OFF_SURFACE: f64 = 1e-7;
 /// A normal within this sine of square to the pull is a wall along it.
 const LEVEL: f64 = 1e-6;
 
-fn candidates(part: &Mesh) -> Vec<DVec3> {
+/// Directions worth looking at, each for both of its ends.
+pub fn candidates(part: &Mesh) -> Vec<DVec3> {
     let normals = large_normals(part);
     let mut all = DVec3::AXES.to_vec();
     all.extend(&normals);
@@ -180,7 +181,8 @@ fn candidates(part: &Mesh) -> Vec<DVec3> {
     distinct(all)
 }
 
-fn large_normals(part: &Mesh) -> Vec<DVec3> {
+/// Distinct normals, up to sign, by the area that has them, largest first.
+pub fn large_normals(part: &Mesh) -> Vec<DVec3> {
     let mut normals: Vec<(DVec3, f64)> = Vec::new();
     let mut facets: Vec<(f64, DVec3)> = (0..part.triangles.len())
         .map(|t| part.corners(t))

@@ -99,6 +99,13 @@ const STRIPS: f64 = 2.0;
 /// Heights that differ by less than this many snaps are the same: each of four coordinates may be off by one.
 const LEVEL_IN_SNAPS: f64 = 4.0;
 
+/// What round-off makes of the height between two facets, mm: a facet that leans and is off by one snap square to itself
+/// is off by more along z. What is overlooked by it is never deeper than that, square to the facet.
+fn level(f: &[DVec3; 3], g: &[DVec3; 3], snap: f64) -> f64 {
+    let lean = |c: &[DVec3; 3]| 1.0 / (c[1] - c[0]).cross(c[2] - c[0]).normalize_or_zero().z.abs();
+    LEVEL_IN_SNAPS / 2.0 * snap * (lean(f) + lean(g))
+}
+
 fn overlap(f: &[DVec3; 3], g: &[DVec3; 3], snap: f64) -> Option<(Vec<DVec2>, f64, f64)> {
     let top = |c: &[DVec3; 3]| c.iter().map(|p| p.z).fold(f64::MIN, f64::max);
     let foot = |c: &[DVec3; 3]| c.iter().map(|p| p.z).fold(f64::MAX, f64::min);
@@ -111,7 +118,7 @@ fn overlap(f: &[DVec3; 3], g: &[DVec3; 3], snap: f64) -> Option<(Vec<DVec2>, f64
         return None;
     }
     let gap = outline.iter().map(|&p| height(g, p) - height(f, p)).fold(f64::MIN, f64::max);
-    (gap > LEVEL_IN_SNAPS * snap).then_some((outline, area, gap))
+    (gap > level(f, g, snap)).then_some((outline, area, gap))
 }
 
 pub fn flat(p: DVec3) -> DVec2 {

@@ -5,6 +5,7 @@
 //! that the solids close around the part; how far the hollow is off the part is measured, and too far is refused.
 
 use crate::mesh::Mesh;
+use crate::mold::frame;
 use crate::mold::prepare::unfit;
 use crate::mold::{Measured, MoldError};
 use crate::solid::{Solid, cuboid};
@@ -13,8 +14,14 @@ use crate::solid::{Solid, cuboid};
 /// about a tenth.
 const OPEN_SHARE: f64 = 0.25;
 
+/// Solids that touch are given with round-off of their places; coordinates this near are one, mm, so that no crack of the
+/// hollow runs between them. A hundredth of what any process makes.
+const SAME: f64 = 1e-4;
+
 pub fn hollow(part: &Mesh, surroundings: &[Mesh]) -> Result<(Mesh, Measured), MoldError> {
     let solid = Solid::of(part)?;
+    let mut surroundings = surroundings.to_vec();
+    frame::aligned(&mut surroundings, SAME);
     let around = surroundings.iter().map(Solid::of).collect::<Result<Vec<_>, _>>()?;
     let (lo, hi) = part.bounds();
     let left = Solid::of(&cuboid(lo, hi))?.minus(&Solid::all(around));

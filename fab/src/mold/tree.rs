@@ -71,6 +71,13 @@ fn feeding(tree: &Tree, gate: &Section, balls: &[(usize, Section)], f: &Figures)
         Measured::at_least("modulus of the gate over the pattern's", m.gate / m.pattern, kept, "", why),
         Measured::at_least("modulus of the runner over the gate's", m.runner / m.gate, kept, "", why),
         Measured::at_most(
+            "diameter of the runner",
+            tree.runner,
+            f.runner.high.max(f.runner.value),
+            "mm",
+            "the most of its range; a heavier one freezes long after the parts",
+        ),
+        Measured::at_most(
             "places thicker than the gate's section",
             hot,
             0.0,
@@ -122,7 +129,8 @@ fn steps(mold: &Mold, tree: &Tree, f: &Figures) -> Vec<Step> {
     let fill: Vec<String> = tree.levels.iter().map(|(z, n)| format!("{n} at {z:.0} mm")).collect();
     vec![
         by_geometry(format!(
-            "wax the patterns to the runner by gates of {:.1} mm; they fill from the foot: {}",
+            "wax the patterns, all of one shape, to a runner of {:.1} mm by gates of {:.1} mm; they fill from the foot: {}",
+            tree.runner,
             tree.gate,
             fill.join(", ")
         )),

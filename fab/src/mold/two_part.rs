@@ -1,7 +1,8 @@
-//! Takes a ready part; gives its rigid mold in two halves, or the finding that it would not open.
+//! Takes a ready part; gives its rigid mold in two halves; one that no two free goes on to `more_parts`.
 //!
 //! Not promised: that zero draft releases by itself; how much of it there is, is said.
 
+use crate::mesh::Mesh;
 use crate::mold::checks::CAVITY_SHARE;
 use crate::mold::fill;
 use crate::mold::layout::{self, Around};
@@ -9,16 +10,17 @@ use crate::mold::make::{blank, extra, finding, push, source};
 use crate::mold::parting;
 use crate::mold::pictures;
 use crate::mold::prepare::Ready;
-use crate::mold::rigid;
-use crate::mold::{Kind, Mold, MoldError, MoldSpec, Step, Volume, scad};
+use crate::mold::rigid::{self, Tools};
+use crate::mold::{Kind, Mold, MoldError, MoldSpec, Parting, Piece, Step, Volume, more_parts, scad};
 use crate::report::{Finding, Severity};
-use crate::solid::Solid;
+use crate::solid::{NotSolid, Solid};
 use glam::DVec3;
 
-/// How much wider the steps of the file for OpenSCAD are, mm: so that two that meet in an edge overlap.
-const FAT: f64 = 0.02;
-
-pub fn mold(ready: Ready, spec: &MoldSpec) -> Result<Mold, MoldError> {
+pub fn mold(part: &Mesh, ready: Ready, spec: &MoldSpec) -> Result<Mold, MoldError> {
+    let (filled, grown) = filled(&ready)?;
+    if ready.pull.undercut_reach_mm > spec.figures.snap.value && grown.is_none() {
+        return more_parts::mold(part, ready, spec);
+    }
     let plan = layout::plan(
         &ready.framed.mesh,
         ready.plane.height,
@@ -26,41 +28,50 @@ pub fn mold(ready: Ready, spec: &MoldSpec) -> Result<Mold, MoldError> {
         &spec.figures,
         Around::printed(&spec.figures),
     );
-    let snap = ready.framed.snap;
-    let (cavity, grown) = filled(&ready)?;
     let mut mold = blank(&ready, spec, plan, spec.figures.draft.value);
     mold.filled_mm3 = grown;
-    let stuck = ready.pull.undercut_reach_mm > spec.figures.snap.value && grown.is_none();
-    mold.findings.extend(undercut_finding(&mold, grown, stuck));
-    mold.extras.push(pictures::maps(&mold));
-    if stuck {
-        return Ok(mold);
-    }
-    let cavity = cavity.as_ref().unwrap_or(&ready.solid);
-    let below = parting::below((mold.plan.low, mold.plan.high), cavity, &ready.plane, snap, 0.0)?;
+    mold.findings.extend(undercut_finding(&mold, grown));
+    let cavity = filled.as_ref().unwrap_or(&ready.solid);
+    let below = below(&mold, cavity, &ready)?;
     let tools = rigid::Tools::of(&mold.plan, &spec.figures)?;
     for (name, half, pull) in rigid::halves(cavity, &below, &mold.plan, &tools)? {
         push(&mut mold, name, Kind::Half, &half, pull, 1);
     }
+    finish(mold, cavity, &below, &tools)
+}
+
+/// Everything below the parting surface, its steps with draft.
+pub fn below(mold: &Mold, cavity: &Solid, ready: &Ready) -> Result<Solid, NotSolid> {
+    let tan = mold.figures.draft.value.to_radians().tan();
+    parting::below((mold.plan.low, mold.plan.high), cavity, &ready.plane, ready.framed.snap, tan)
+}
+
+/// The rest of a rigid mold that has its pieces: sources, volumes, steps, pictures.
+pub fn finish(mut mold: Mold, cavity: &Solid, below: &Solid, tools: &Tools) -> Result<Mold, MoldError> {
     mold.pieces.push(source("part", Kind::Part, &mold.part));
-    if ready.plane.wrong > 0.0 {
-        let file = parting::below((mold.plan.low, mold.plan.high), &ready.solid, &ready.plane, snap, FAT)?;
-        push(&mut mold, "below", Kind::Below, &file, DVec3::ZERO, 0);
+    if matches!(mold.parting, Some(Parting::Stepped { .. })) {
+        push(&mut mold, "below", Kind::Below, below, DVec3::ZERO, 0);
     }
     mold.findings.extend(draft_finding(&mold));
+    mold.extras.push(pictures::maps(&mold));
     let channels = tools.above.minus(cavity).common(&Solid::of(&mold.part_box())?);
     mold.volumes.push(Volume { of: "cavity".into(), mm3: cavity.volume(), grams: None });
     mold.volumes.push(Volume { of: "channels and slots".into(), mm3: channels.volume(), grams: None });
     mold.steps = steps(&mold);
-    extra(&mut mold, "scad", scad::two_part);
+    if scad::has_all(&mold) {
+        extra(&mut mold, "scad", scad::rigid);
+    }
     mold.extras.push(pictures::opened(&mold));
     Ok(mold)
 }
 
 fn steps(mold: &Mold) -> Vec<Step> {
     let (f, plan) = (&mold.figures, &mold.plan);
-    let does = [
-        "print both halves; seal the faces of the cavity, coat them with release agent".to_string(),
+    let cores: Vec<&Piece> = mold.pieces.iter().filter(|p| p.kind == Kind::Core).collect();
+    let names = cores.iter().map(|p| p.name.as_str()).collect::<Vec<_>>().join(", ");
+    let prints = if cores.is_empty() { "both halves" } else { "both halves and the side cores" };
+    let mut does = vec![
+        format!("print {prints}; seal the faces of the cavity, coat them with release agent"),
         format!(
             "close the halves: the {} keys fit one way only; screws through the {} holes of {} mm",
             plan.keys.len(),
@@ -75,6 +86,18 @@ fn steps(mold: &Mold) -> Vec<Step> {
         ),
         "when it has cured, take the screws out and pry at the slots: the halves leave straight".to_string(),
     ];
+    if !cores.is_empty() {
+        does.insert(
+            2,
+            format!("push the cores in until they sit in their taper: {names}, the last named first"),
+        );
+        let way = |p: &&Piece| format!("{} along {:.2}", p.name, p.pull);
+        let ways = cores.iter().map(way).collect::<Vec<_>>().join(", then ");
+        does.insert(
+            4,
+            format!("when it has cured, pull the cores out straight by their grips, in this order: {ways}"),
+        );
+    }
     let step =
         |does: String| Step { does, hours: None, celsius: None, source: "geometry of this mold".into() };
     does.into_iter().map(step).collect()
@@ -97,18 +120,15 @@ fn filled(ready: &Ready) -> Result<(Option<Solid>, Option<f64>), MoldError> {
 /// Undercuts wider than this are features, mm, not slips of the facets: a tenth of the finest nozzle.
 const WORTH_FILLING: f64 = 0.04;
 
-fn undercut_finding(mold: &Mold, grown: Option<f64>, stuck: bool) -> Option<Finding> {
-    let p = &mold.pull;
+/// Where the largest undercut facet is.
+pub fn worst_undercut(mold: &Mold) -> Vec<DVec3> {
     let worst = mold.maps.undercut_mm2.iter().enumerate().max_by(|a, b| a.1.total_cmp(b.1));
-    let at: Vec<DVec3> =
-        worst.map(|(t, _)| mold.part.corners(t).iter().sum::<DVec3>() / 3.0).into_iter().collect();
-    let (area, wide) = (p.undercut_mm2, p.undercut_reach_mm);
-    if stuck {
-        let what = format!(
-            "{area:.3} mm2 are undercut in every direction looked at, here {wide:.2} mm wide; a rigid mold in two halves would not open, and none is made"
-        );
-        return Some(finding(mold, Severity::Error, at, what, "take the silicone route, or divide the part"));
-    }
+    worst.map(|(t, _)| mold.part.corners(t).iter().sum::<DVec3>() / 3.0).into_iter().collect()
+}
+
+fn undercut_finding(mold: &Mold, grown: Option<f64>) -> Option<Finding> {
+    let at = worst_undercut(mold);
+    let (area, wide) = (mold.pull.undercut_mm2, mold.pull.undercut_reach_mm);
     match grown {
         Some(g) if g > 0.0 => Some(finding(
             mold,

@@ -48,8 +48,10 @@ impl MoldSpec {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Kind {
-    /// A half (or further part) of a rigid mold; leaves along its `pull`.
+    /// A half of a rigid mold; leaves along its `pull`.
     Half,
+    /// A side core of a rigid mold; leaves along its `pull` before the halves do.
+    Core,
     /// Master and parting board in one print.
     PatternBoard,
     /// Stands on the board and holds the pour.
@@ -62,18 +64,32 @@ pub enum Kind {
     Part,
     /// Everything below the parting surface, for the `.scad` sources.
     Below,
+    /// The part with its undercuts filled, for the `.scad` sources.
+    Filled,
+    /// A side core with all the room that it takes, for the `.scad` sources.
+    Room,
+}
+
+impl Kind {
+    /// Whether it is a solid to be made, not one that sources refer to.
+    pub fn is_made(self) -> bool {
+        !matches!(self, Kind::Part | Kind::Below | Kind::Filled | Kind::Room)
+    }
 }
 
 impl Kind {
     pub fn words(self) -> &'static str {
         match self {
             Kind::Half => "mold half",
+            Kind::Core => "side core",
             Kind::PatternBoard => "pattern board",
             Kind::BoxWall => "box wall",
             Kind::Tree => "tree, joined from patterns: not printed",
             Kind::Flask => "flask, of steel: not printed",
             Kind::Part => "part",
             Kind::Below => "parting surface",
+            Kind::Filled => "part with undercuts filled",
+            Kind::Room => "room of a side core",
         }
     }
 }
@@ -113,8 +129,8 @@ pub struct Pull {
 pub struct Maps {
     /// Angle between facet and pull, degrees: 0 for a wall along the pull, 90 for a face across it.
     pub draft_deg: Vec<f64>,
-    /// Which half forms it.
-    pub half: Vec<&'static str>,
+    /// Which half or core forms it.
+    pub half: Vec<String>,
     /// Area not reached from its half, mm2.
     pub undercut_mm2: Vec<f64>,
     /// Area with less than the draft asked for, mm2.

@@ -27,6 +27,8 @@ pub struct Section {
 /// A tree and its measures.
 pub struct Tree {
     pub solid: Solid,
+    /// Diameters, mm.
+    pub runner: f64,
     pub gate: f64,
     /// The pattern, its gate along -x at the origin.
     pub lying: Mesh,
@@ -90,7 +92,8 @@ const BETWEEN: f64 = 10.0;
 const NECK: f64 = 0.5;
 
 pub fn tree(part: &Mesh, at: &Section, count: usize, f: &Figures) -> Result<Tree, NotSolid> {
-    let (runner, gate) = (f.runner.value, gate(part, at, f));
+    let gate = gate(part, at, f);
+    let runner = runner(gate, f);
     // The way out at the gate turns to -x, toward the runner; the gate is the x axis.
     let turn = toward_runner(at.out);
     let lying = part.map(|v| turn * (v - at.at));
@@ -125,7 +128,7 @@ pub fn tree(part: &Mesh, at: &Section, count: usize, f: &Figures) -> Result<Tree
     let radius = solid.mesh().vertices.iter().map(|v| v.truncate().length()).fold(0.0, f64::max);
     let moduli = Moduli { pattern: part.volume() / part.area(), gate: gate / 4.0, runner: runner / 4.0 };
     let foot = solid.mesh().bounds().0.z;
-    Ok(Tree { solid, gate, lying, reach, into, levels, radius, foot, top: top + runner, moduli })
+    Ok(Tree { solid, runner, gate, lying, reach, into, levels, radius, foot, top: top + runner, moduli })
 }
 
 /// The gate's diameter, mm: of the area asked for, and up to the most of its range where its modulus asks for more.
@@ -133,6 +136,12 @@ fn gate(part: &Mesh, at: &Section, f: &Figures) -> f64 {
     let of_area = |percent: f64| at.thick * (percent / 100.0).sqrt();
     let feeding = 4.0 * f.modulus_step.value * part.volume() / part.area();
     feeding.clamp(of_area(f.feed_area.value), of_area(f.feed_area.high.max(f.feed_area.value)))
+}
+
+/// The runner's diameter, mm: what is asked for, or as much more as its modulus needs to exceed the gate's by a step. Its
+/// cup widens to twice that, so that the modulus rises all the way to where the metal comes in.
+fn runner(gate: f64, f: &Figures) -> f64 {
+    f.runner.value.max(gate * f.modulus_step.value)
 }
 
 /// A rotation that takes `out` to -x and keeps z as far up as it can be.

@@ -9,7 +9,7 @@ use crate::files::{Batch, FileError, stl};
 use crate::mesh::{Closure, Mesh};
 use crate::mold::checks::{self, Halves};
 use crate::mold::make::finding;
-use crate::mold::{Measured, Mold, MoldError, MoldReport, Piece, Route, WrittenPiece, scad};
+use crate::mold::{Kind, Measured, Mold, MoldError, MoldReport, Piece, Route, WrittenPiece, scad};
 use crate::report::{Finding, Place, Severity};
 use std::path::Path;
 
@@ -43,7 +43,11 @@ fn stage(mold: &Mold, piece: &Piece, batch: &mut Batch) -> Result<Mesh, MoldErro
 fn measured(mold: &Mold, back: &[Mesh]) -> Result<Vec<Measured>, MoldError> {
     let find = |name: &str| mold.pieces.iter().position(|p| p.name == name).map(|k| &back[k]);
     match (mold.route, find("lower"), find("upper"), find("board")) {
-        (Route::Rigid, Some(lower), Some(upper), _) => Ok(checks::rigid(mold, &Halves { lower, upper })?),
+        (Route::Rigid, Some(lower), Some(upper), _) => {
+            let own = mold.pieces.iter().zip(back).filter(|(p, _)| p.kind == Kind::Core);
+            let cores = own.map(|(p, m)| (m, p.pull)).collect();
+            Ok(checks::rigid(mold, &Halves { lower, upper, cores })?)
+        }
         (Route::Silicone, _, _, Some(board)) => Ok(checks::silicone(mold, board)?),
         _ => Ok(vec![]),
     }
@@ -95,7 +99,17 @@ fn report(mold: &Mold, back: &[Mesh]) -> MoldReport {
 pub fn check_openscad(report: &mut MoldReport, folder: &Path, program: &str) {
     let source = folder.join(format!("{}.scad", report.name));
     let Ok(openscad) = OpenScad::new(program, &std::env::temp_dir()) else { return };
+    let there = source.exists();
     for piece in report.pieces.iter_mut().filter(|p| p.copies > 0) {
+        if !there {
+            let outcome = Outcome::NotRun("there is no source".into());
+            piece.checks.push(Check {
+                by: "OpenSCAD".into(),
+                of: "the same solid from the source".into(),
+                outcome,
+            });
+            continue;
+        }
         let check = openscad.same(
             &source,
             &format!("half=\"{}\"", piece.name),

@@ -136,7 +136,11 @@ fn melts(m: &MoldSheet) -> bool {
 fn mold_lines(m: &MoldSheet, process: &Process) -> Vec<Line> {
     let print = &process.print;
     let printed = m.report.pieces.iter().filter(|p| {
-        p.copies > 0 && matches!(p.kind, PieceKind::Half | PieceKind::PatternBoard | PieceKind::BoxWall)
+        p.copies > 0
+            && matches!(
+                p.kind,
+                PieceKind::Half | PieceKind::Core | PieceKind::PatternBoard | PieceKind::BoxWall
+            )
     });
     let print_line = |p: &WrittenPiece| {
         let what = format!("printed {}: {}", p.kind.words(), p.file);

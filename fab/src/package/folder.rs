@@ -2,9 +2,10 @@
 //!
 //! Everything is written into a folder beside, which is renamed in the end. Where the folder is there already its other
 //! files stay; a file of the same name is never replaced unasked. Not promised: that a machine which stops while files
-//! are moved into a folder that is there leaves either all or none of them; a killed run leaves the hidden folder beside.
+//! are moved into a folder that is there leaves either all or none of them. What a killed run leaves beside, the next run
+//! into a folder beside it clears.
 
-use crate::files::FileError;
+use crate::files::{FileError, stale};
 use std::collections::BTreeSet;
 use std::fs;
 use std::io::{self, Write};
@@ -26,6 +27,8 @@ pub struct Folder {
     replace: Replace,
     /// Folders that were made on the way to it, outermost first.
     made: Vec<PathBuf>,
+    /// Whoever finds it locked leaves the hidden folder alone.
+    mark: Option<stale::Mark>,
 }
 
 fn failed(action: &'static str, path: &Path) -> impl FnOnce(io::Error) -> FileError {
@@ -49,9 +52,13 @@ impl Folder {
         let name = absolute.file_name().unwrap_or_default().to_string_lossy().into_owned();
         let beside = parent.join(format!(".{name}.{}.part", std::process::id()));
         let made: Vec<PathBuf> = made.into_iter().rev().collect();
-        let folder = Folder { place: absolute, beside, replace, made };
+        let mut folder = Folder { place: absolute, beside, replace, made, mark: None };
+        stale::clear(&parent);
         // One that a killed run of the same number left is nobody's.
         let _ = fs::remove_dir_all(&folder.beside);
+        // The mark comes first: whoever is killed after it is cleared.
+        fs::create_dir_all(&parent).map_err(failed("make folder", place))?;
+        folder.mark = stale::mark(&parent);
         fs::create_dir_all(&folder.beside).map_err(failed("make folder", place))?;
         Ok(folder)
     }
@@ -157,6 +164,7 @@ impl Drop for Folder {
     /// Removes what was not committed; what can not be removed can not be helped here.
     fn drop(&mut self) {
         let _ = fs::remove_dir_all(&self.beside);
+        drop(self.mark.take());
         for folder in self.made.iter().rev() {
             let _ = fs::remove_dir(folder);
         }

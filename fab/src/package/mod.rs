@@ -128,7 +128,7 @@ pub fn pack(job: &Job, recipe: &Recipe, order: &Order, out: &Path) -> Result<Pac
     let mut output = make::output(job, recipe, &folder.path().join("parts"))?;
     relative(&mut output.report, folder.path());
     let mut package = filled(&output, &folder)?;
-    molds::molds(&output, &mut package, &folder, recipe.programs.as_ref())?;
+    molds::molds(job, &output, &mut package, &folder, recipe)?;
     verdicts::ask(&mut package, recipe, folder.path());
     verdicts::collect(&mut package);
     for file in pictures(&mut package, &output, order) {

@@ -5,14 +5,17 @@
 
 use super::PackageReport;
 use super::folder::Folder;
-use super::prints::{kind_of, stem};
-use crate::check::Programs;
+use super::prints::{self, MoldPrint, kind_of, stem};
+use crate::ears::triangulate;
 use crate::files::Batch;
-use crate::make::{FabError, Output};
+use crate::make::{Cavity, FabError, Output, Recipe};
+use crate::mesh::Mesh;
 use crate::mold::figures::Figures;
-use crate::mold::{self, Kind, MoldError, MoldReport, MoldSpec};
+use crate::mold::{self, Kind, Mold, MoldError, MoldReport, MoldSpec};
 use crate::process::Route;
 use crate::report::{Finding, MoldFile, Place, Severity};
+use crate::shape::Job;
+use glam::DVec3;
 use serde::Serialize;
 
 /// A mold of the package.
@@ -49,13 +52,15 @@ fn word(route: mold::Route) -> &'static str {
 
 /// Makes, writes and measures all molds.
 pub fn molds(
+    job: &Job,
     output: &Output,
     package: &mut PackageReport,
     folder: &Folder,
-    programs: Option<&Programs>,
+    recipe: &Recipe,
 ) -> Result<(), FabError> {
     let figures = Figures::embedded().map_err(|e| FabError::Figures(e.to_string()))?;
     let place = folder.path().join(PLACE);
+    let mut printed = Vec::new();
     for p in (0..output.masters.len()).filter(|&p| output.masters[p].is_some() && kind_of(output, p) == p) {
         let part = &output.report.parts[p];
         let route = output.report.routes.iter().find(|r| r.parts.contains(&part.id)).map(|r| r.process.route);
@@ -65,16 +70,15 @@ pub fn molds(
             .collect();
         for &wanted in routes(route.unwrap_or(Route::Print)) {
             let name = format!("{}-{}", stem(output, p), word(wanted));
-            let count = if wanted == mold::Route::LostWax { parts.len() } else { 1 };
+            let count = if wanted == mold::Route::LostWax { parts.len() } else { recipe.gang };
             let spec = MoldSpec { count, ..MoldSpec::new(&name, wanted, figures.clone()) };
             let mut batch = Batch::new(&place)?;
-            let made = output.masters[p]
-                .as_ref()
-                .map(|m| mold::make(m, &spec).and_then(|m| mold::write(&m, &mut batch)));
-            match made {
-                Some(Ok(mut report)) => {
+            let write = |mold: Mold| mold::write(&mold, &mut batch).map(|report| (mold, report));
+            match made((job, output), p, &spec, recipe.cavity).map(|m| m.and_then(write)) {
+                Some(Ok((mold, mut report))) => {
                     batch.commit()?;
-                    if let Some(programs) = programs {
+                    printed.extend(prints_of(mold, &part.process));
+                    if let Some(programs) = &recipe.programs {
                         mold::check_openscad(&mut report, &place, &programs.openscad);
                     }
                     keep(package, parts.clone(), &part.process, report);
@@ -85,9 +89,85 @@ pub fn molds(
             }
         }
     }
+    for file in prints::mold_plates(&printed, package) {
+        folder.write(&file.name, &file.bytes)?;
+    }
     package.report.molds_note = note(package);
     super::bill::add_molds(&mut package.bill, &package.report, &package.mold_sheets);
     Ok(())
+}
+
+/// The mold of a shape; `None` where the part was not written. Of a cavity that the parts around it form: that of the first
+/// part of this shape that is closed in by others, or why none is.
+fn made(
+    (job, output): (&Job, &Output),
+    p: usize,
+    spec: &MoldSpec,
+    cavity: Cavity,
+) -> Option<Result<Mold, MoldError>> {
+    let master = output.masters[p].as_ref()?;
+    if cavity == Cavity::Part || spec.route == mold::Route::LostWax {
+        return Some(mold::make(master, spec));
+    }
+    let same = (p..output.masters.len()).filter(|&q| kind_of(output, q) == p);
+    let mut refused = None;
+    for q in same {
+        let Some(part) = &output.masters[q] else { continue };
+        let order = MoldSpec { surroundings: around((job, output), q, part), ..spec.clone() };
+        match mold::make(part, &order) {
+            Ok(mut mold) => {
+                mold.findings.push(no_clearance(&output.report.parts[q].id));
+                return Some(Ok(mold));
+            }
+            Err(e) => refused = Some(e),
+        }
+    }
+    refused.map(Err)
+}
+
+fn no_clearance(id: &str) -> Finding {
+    Finding {
+        severity: Severity::Warning,
+        place: Place { parts: vec![id.to_string()], at: vec![] },
+        what:
+            "the cavity is what the parts around this one leave: the casting touches them, with no clearance"
+                .into(),
+        remedy: "take it for a part that gives way, or let the part itself form the cavity".into(),
+    }
+}
+
+/// The parts near a part as they touch, without clearance, brought to its scale: with clearance there would be cracks
+/// between them.
+fn around((job, output): (&Job, &Output), q: usize, part: &Mesh) -> Vec<Mesh> {
+    let (scale, datum) = (output.report.parts[q].scale, output.report.datum);
+    let (lo, hi) = part.bounds();
+    let near = |m: &Mesh| {
+        let (l, h) = m.bounds();
+        l.cmple(hi).all() && lo.cmple(h).all()
+    };
+    let nominal = |r: usize| {
+        let (shape, pose) = (&job.shapes[job.parts[r].shape], job.parts[r].pose);
+        let triangles = shape.facets.iter().flat_map(|f| triangulate(&shape.vertices, f)).collect();
+        let place = |v: &DVec3| datum + (pose.transform_point3(*v) - datum) * scale;
+        Mesh { vertices: shape.vertices.iter().map(place).collect(), triangles }
+    };
+    (0..job.parts.len()).filter(|&r| r != q).map(nominal).filter(near).collect()
+}
+
+/// What of a mold comes from the printer.
+fn prints_of(mold: Mold, process: &str) -> Vec<MoldPrint> {
+    let name = mold.name;
+    let printed = |k: Kind| matches!(k, Kind::Half | Kind::Core | Kind::PatternBoard | Kind::BoxWall);
+    let made = mold.pieces.into_iter().filter(|p| p.copies > 0 && printed(p.kind));
+    let print = |p: mold::Piece| MoldPrint {
+        process: process.to_string(),
+        name: format!("{name}.{}", p.name),
+        kind: p.kind,
+        pull: p.pull,
+        copies: p.copies,
+        mesh: p.mesh,
+    };
+    made.map(print).collect()
 }
 
 fn note(package: &PackageReport) -> String {
@@ -121,7 +201,7 @@ fn keep(package: &mut PackageReport, parts: Vec<String>, process: &str, mut repo
         watertight: p.watertight,
         checks: p.checks.clone(),
     };
-    let made = |p: &&mold::WrittenPiece| !matches!(p.kind, Kind::Part | Kind::Below);
+    let made = |p: &&mold::WrittenPiece| p.kind.is_made();
     package.report.molds.extend(report.pieces.iter().filter(made).map(file));
     package.report.findings.extend(report.findings.iter().cloned());
     package.mold_sheets.push(MoldSheet { parts, process: process.to_string(), report });

@@ -1,4 +1,5 @@
-//! Takes the meshes on their masters; gives what is printed of them: each part alone, plates, the assembly, coupons.
+//! Takes the meshes on their masters; gives what is printed of them and of their molds: each part alone, plates, the
+//! assembly, coupons.
 //!
 //! Promised: every mesh of a 3MF is what was checked as STL, turned and shifted, rounded to f32, still closed, with every
 //! item in the positive octant. Not promised: that a slicer keeps the places on a plate when it is told to arrange.
@@ -9,6 +10,8 @@ use crate::coupon::Coupon;
 use crate::files::{stems, stl};
 use crate::make::Output;
 use crate::mesh::{Closure, Mesh};
+use crate::mold::Kind as PieceKind;
+use crate::mold::frame::upright;
 use crate::process::Process;
 use crate::report::{Finding, Place, RouteReport, Severity};
 use crate::threemf::{self, Build, Model, Object};
@@ -131,48 +134,120 @@ fn plates_of(
     let mut kinds: Vec<usize> = things.iter().map(|t| t.kind).collect();
     kinds.sort_unstable();
     kinds.dedup();
-    let turned: Vec<Mesh> = kinds.iter().map(|&k| turned(output, package, k)).collect();
-    let place = |t: &Thing| kinds.binary_search(&t.kind).unwrap_or(0);
-    let sizes: Vec<(DVec3, String)> =
-        things.iter().map(|t| (turned[place(t)].bounds().1, t.part.clone())).collect();
-    let arranged = plate::arrange(&sizes, &route.process.print.bed);
+    let id = |k: usize| output.report.parts[k].id.clone();
+    let load = Load {
+        process: &route.process,
+        stem: if route.process.route.printed() == "master" { format!("{name}-masters") } else { name.into() },
+        scale: route.scale,
+        solids: kinds.iter().map(|&k| (id(k), turned(output, package, k))).collect(),
+        things: things.into_iter().map(|t| (kinds.binary_search(&t.kind).unwrap_or(0), t.part)).collect(),
+        remedy: "name a larger bed with --bed, or take a smaller pitch",
+    };
+    loaded(&load, package)
+}
+
+/// What stands on the plates of a process.
+struct Load<'a> {
+    process: &'a Process,
+    /// Of the files' names.
+    stem: String,
+    scale: f64,
+    /// Different solids as they lie on the bed, lowest corner at the origin, by name.
+    solids: Vec<(String, Mesh)>,
+    /// What is printed: the index of its solid, and what it is for.
+    things: Vec<(usize, String)>,
+    /// Where one is too large for the bed.
+    remedy: &'static str,
+}
+
+fn loaded(load: &Load, package: &mut PackageReport) -> Vec<Attachment> {
+    let bed = &load.process.print.bed;
+    let size = |t: &(usize, String)| (load.solids[t.0].1.bounds().1, t.1.clone());
+    let sizes: Vec<(DVec3, String)> = load.things.iter().map(size).collect();
+    let arranged = plate::arrange(&sizes, bed);
     for &k in &arranged.too_large {
-        package.report.findings.push(too_large(&things[k].part, sizes[k].0, &route.process));
+        package.report.findings.push(too_large(&sizes[k], load));
     }
     let mut files = Vec::new();
     for (k, stands) in arranged.plates.into_iter().enumerate() {
-        let file = format!("print/{name}-plate-{}.mm.3mf", k + 1);
-        let objects: Vec<usize> = stands.iter().map(|s| place(&things[s.thing])).collect();
-        let mut used = objects.clone();
-        used.sort_unstable();
-        used.dedup();
-        let object =
-            |&u: &usize| Object { name: output.report.parts[kinds[u]].id.clone(), mesh: turned[u].clone() };
-        let items = stands.iter().zip(&objects);
-        let model = Model {
-            title: format!("{} plate {}", output.report.name, k + 1),
-            description: format!("Scale {} already applied: print at 100 %.", route.scale),
-            objects: used.iter().map(object).collect(),
-            build: Build::Items(
-                items.map(|(s, u)| (used.binary_search(u).unwrap_or(0), s.at, s.part.clone())).collect(),
-            ),
-        };
-        files.extend(packed(&file, &model, package));
-        let shown = stands.iter().zip(&objects).map(|(s, &u)| (s.part.clone(), turned[u].map(|v| v + s.at)));
-        let shown = shown.collect();
-        let bed = &route.process.print.bed;
+        let file = format!("print/{}-plate-{}.mm.3mf", load.stem, k + 1);
+        let of: Vec<usize> = stands.iter().map(|s| load.things[s.thing].0).collect();
+        files.extend(packed(&file, &model(load, k + 1, &stands, &of, &package.report.name), package));
+        let shown = stands.iter().zip(&of);
         package.plates.push(PlateReport {
+            shown: shown.map(|(s, &u)| (s.part.clone(), load.solids[u].1.map(|v| v + s.at))).collect(),
             file,
-            process: route.process.name.clone(),
+            process: load.process.name.clone(),
             bed: bed.name.clone(),
             bed_mm: bed.size,
             stands,
             grams: None,
             checks: vec![],
-            shown,
         });
     }
     files
+}
+
+/// A plate as 3MF; `of`: the solid of each thing that stands on it.
+fn model(load: &Load, number: usize, stands: &[plate::Stand], of: &[usize], title: &str) -> Model {
+    let mut used = of.to_vec();
+    used.sort_unstable();
+    used.dedup();
+    let object = |&u: &usize| Object { name: load.solids[u].0.clone(), mesh: load.solids[u].1.clone() };
+    let item = |(s, u): (&plate::Stand, &usize)| (used.binary_search(u).unwrap_or(0), s.at, s.part.clone());
+    Model {
+        title: format!("{title} plate {number}"),
+        description: format!("Scale {} already applied: print at 100 %.", load.scale),
+        objects: used.iter().map(object).collect(),
+        build: Build::Items(stands.iter().zip(of).map(item).collect()),
+    }
+}
+
+/// A piece of a mold to be printed, in the mold's frame.
+pub struct MoldPrint {
+    pub process: String,
+    /// Of its file.
+    pub name: String,
+    pub kind: PieceKind,
+    pub pull: DVec3,
+    pub copies: usize,
+    pub mesh: Mesh,
+}
+
+/// The plates of all that is printed of molds, for each process its own.
+pub fn mold_plates(prints: &[MoldPrint], package: &mut PackageReport) -> Vec<Attachment> {
+    let routes = package.report.routes.clone();
+    let names = stems(&routes.iter().map(|r| r.process.name.clone()).collect::<Vec<_>>());
+    let mut files = Vec::new();
+    for (route, name) in routes.iter().zip(names) {
+        let own: Vec<&MoldPrint> = prints.iter().filter(|p| p.process == route.process.name).collect();
+        let things = |(k, p): (usize, &&MoldPrint)| vec![(k, p.name.clone()); p.copies];
+        let load = Load {
+            process: &route.process,
+            stem: format!("{name}-molds"),
+            scale: route.scale,
+            solids: own.iter().map(|p| (p.name.clone(), as_printed(p))).collect(),
+            things: own.iter().enumerate().flat_map(things).collect(),
+            remedy: "name a larger bed with --bed, take a smaller pitch, or cast a shorter part",
+        };
+        files.extend(loaded(&load, package));
+    }
+    files
+}
+
+/// On the bed: halves with the parting face up, cores on their grips, the long side along the bed's.
+fn as_printed(p: &MoldPrint) -> Mesh {
+    let mesh = match p.kind {
+        PieceKind::Half if p.pull.z > 0.0 => p.mesh.map(|v| DVec3::new(v.x, -v.y, -v.z)),
+        PieceKind::Core => {
+            let turn = upright(-p.pull);
+            p.mesh.map(|v| turn * v)
+        }
+        _ => p.mesh.clone(),
+    };
+    let (lo, hi) = mesh.bounds();
+    let long = hi - lo;
+    grounded(&if long.y > long.x { mesh.map(|v| DVec3::new(v.y, -v.x, v.z)) } else { mesh })
 }
 
 /// The mesh as it lies on the bed, its lowest corner at the origin.
@@ -183,20 +258,21 @@ fn turned(output: &Output, package: &PackageReport, kind: usize) -> Mesh {
     laying.map_or(mesh.clone(), |l| grounded(&mesh.map(|v| l.laying.turn * v)))
 }
 
-fn too_large(part: &str, size: DVec3, process: &Process) -> Finding {
-    let [x, y, z] = process.print.bed.size;
+fn too_large((size, part): &(DVec3, String), load: &Load) -> Finding {
+    let bed = &load.process.print.bed;
+    let [x, y, z] = bed.size;
     Finding {
         severity: Severity::Error,
-        place: Place { parts: vec![part.to_string()], at: vec![] },
+        place: Place { parts: vec![part.clone()], at: vec![] },
         what: format!(
             "lies on {:.1} x {:.1} x {:.1} mm; the bed {} takes {x} x {y} x {z} mm less {} mm around; it is on no plate",
             size.x,
             size.y,
             size.z,
-            process.print.bed.name,
+            bed.name,
             plate::SPACING
         ),
-        remedy: "name a larger bed with --bed, or take a smaller pitch".into(),
+        remedy: load.remedy.into(),
     }
 }
 

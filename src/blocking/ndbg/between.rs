@@ -48,19 +48,26 @@ impl Between {
         let mut caps: Vec<(Cap, usize, usize)> =
             all.map(|(i, j)| (balls_a[i].toward(&balls_b[j], step), i, j)).collect();
         caps.sort_by(|x, y| y.0.angle.total_cmp(&x.0.angle).then((x.1, x.2).cmp(&(y.1, y.2))));
+        let mut around: Vec<Cap> = self.free.iter().map(Cap::around).collect();
         for (cap, i, j) in caps {
+            // What a kept cone holds takes nothing away; most small cones lie in wide ones.
+            work.spend(self.cones.len())?;
+            if self.cones.iter().any(|c| cap.inside(c)) {
+                continue;
+            }
             work.spend(self.free.len())?;
-            let near: Vec<bool> = self.free.iter().map(|s| cap.meets(s)).collect();
+            let near: Vec<bool> = around.iter().map(|c| cap.meets(c)).collect();
             if near.contains(&true) {
                 work.spend(cells_a[i].vertices.len() * cells_b[j].vertices.len())?;
-                self.take(Blocked::by_cells(&cells_a[i], &cells_b[j], step, touch.depth()), &near);
+                let cone = Blocked::by_cells(&cells_a[i], &cells_b[j], step, touch.depth());
+                self.take(cone, &near, &mut around);
             }
         }
         Some(self)
     }
 
-    /// `near`: the free sectors that the cone may have a direction in common with.
-    fn take(&mut self, cone: Blocked, near: &[bool]) {
+    /// `near`: the free sectors that the cone may have a direction in common with; `around`: a cap around each.
+    fn take(&mut self, cone: Blocked, near: &[bool], around: &mut Vec<Cap>) {
         if never(&cone) {
             return;
         }
@@ -68,13 +75,17 @@ impl Between {
         if !bitten.contains(&true) {
             return;
         }
-        let old = std::mem::take(&mut self.free);
-        for (sector, bitten) in old.into_iter().zip(bitten) {
-            if bitten {
-                self.free.extend(cone.taken_from(&sector));
+        let old = std::mem::take(&mut self.free).into_iter().zip(std::mem::take(around));
+        for ((sector, cap), bitten) in old.zip(bitten) {
+            let (pieces, caps) = if bitten {
+                let pieces = cone.taken_from(&sector);
+                let caps = pieces.iter().map(Cap::around).collect();
+                (pieces, caps)
             } else {
-                self.free.push(sector);
-            }
+                (vec![sector], vec![cap])
+            };
+            self.free.extend(pieces);
+            around.extend(caps);
         }
         self.cones.push(cone);
     }
@@ -115,12 +126,22 @@ struct Cap {
 }
 
 impl Cap {
-    /// Whether the cap may have a direction in common with the sector: never wrong when it says no.
-    fn meets(&self, sector: &Sector) -> bool {
-        let m = sector.middle();
-        // A convex sector lies in the cap about its middle that reaches its farthest corner.
-        let reach = sector.corners().iter().map(|c| c.angle_between(m)).fold(0.0, f64::max);
-        m.angle_between(self.middle) <= self.angle + reach + SAME_ANGLE
+    /// Whether all directions of the cap lie inside the cone.
+    fn inside(&self, cone: &Blocked) -> bool {
+        self.angle < PI / 2.0 && cone.0.iter().all(|n| n.dot(self.middle) > self.angle.sin() + SAME_ANGLE)
+    }
+
+    /// A convex sector lies in the cap about its middle that reaches its farthest corner.
+    fn around(sector: &Sector) -> Cap {
+        let middle = sector.middle();
+        let angle = sector.corners().iter().map(|c| c.angle_between(middle)).fold(0.0, f64::max);
+        Cap { middle, angle }
+    }
+
+    /// Whether two caps may have a direction in common: never wrong when it says no.
+    fn meets(&self, other: &Cap) -> bool {
+        let both = self.angle + other.angle + SAME_ANGLE;
+        both >= PI || self.middle.dot(other.middle) >= both.cos()
     }
 }
 

@@ -48,9 +48,9 @@ pub enum Reach {
 /// Pairs of cells, counted once for congruent pairs of parts, beyond this are not put into each other's way: each costs up to 100 microseconds.
 pub const MOST_CELL_PAIRS: usize = 500_000;
 
-/// Steps of the free sectors' making beyond this are not taken: each costs some tens of nanoseconds, a bite out of a
-/// sector some microseconds.
-pub const MOST_STEPS: usize = 100_000_000;
+/// Steps of the free sectors' making beyond this are not taken: each costs some nanoseconds, a bite out of a sector
+/// some microseconds.
+pub const MOST_STEPS: usize = 1_000_000_000;
 
 /// Arcs of all distinct graphs together beyond this are not kept: some hundred megabytes as an answer.
 pub const MOST_ARCS: usize = 5_000_000;

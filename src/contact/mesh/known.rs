@@ -23,18 +23,26 @@ pub struct Accuracy {
 /// Round-off of a unit normal that is summed from a few cross products and turned by a pose.
 const ROUND_OFF: f64 = 16.0 * f64::EPSILON;
 
-/// For each part the normals of its facets, and the largest angle (radians) by which one was turned.
-pub(super) fn normals(
-    assembly: &Assembly,
-    accuracy: &[Accuracy],
-    tolerance: f64,
-) -> (Vec<Vec<Direction>>, f64) {
+/// How the facets of an assembly lie.
+pub(super) struct Normals {
+    /// For each part those of its facets.
+    pub of: Vec<Vec<Direction>>,
+    /// The largest angle (radians) by which one was turned.
+    pub turned: f64,
+    /// For each part by how much a corner may be off, in model units.
+    pub off: Vec<f64>,
+}
+
+/// The normals of all facets in place.
+pub(super) fn normals(assembly: &Assembly, accuracy: &[Accuracy], tolerance: f64) -> Normals {
     let faces: Vec<Faces> = assembly.solids.iter().map(Faces::of).collect();
     let (mut all, mut apart, mut first, mut of_all) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+    let mut offs = Vec::new();
     for p in assembly.ids() {
         let own = &faces[assembly.part(p).solid];
         let turn = accuracy.get(p.at()).map_or(0.0, |a| a.turn);
         let off = own.corner_error(accuracy, p, tolerance);
+        offs.push(off);
         let start = all.len();
         first.push(start);
         of_all.extend((0..own.normals.len()).map(|k| (p, k)));
@@ -51,7 +59,7 @@ pub(super) fn normals(
     let of =
         |p: PartIx| faces[assembly.part(p).solid].of_facet.iter().map(|k| one[first[p.at()] + k]).collect();
     let turned = one.iter().zip(&all).map(|(d, e)| d.n.angle_between(e.n)).fold(0.0, f64::max);
-    (assembly.ids().map(of).collect(), turned)
+    Normals { of: assembly.ids().map(of).collect(), turned, off: offs }
 }
 
 /// The flat faces of a solid: facets with one normal that hang together.

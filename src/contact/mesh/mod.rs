@@ -73,6 +73,8 @@ pub struct MeshContacts {
     pub patches: Vec<Patch>,
     pub facts: Vec<Facts>,
     pub assumed: Vec<Assumed>,
+    /// For each patch by how much its corners may be off as far as the files tell, in model units.
+    pub off: Vec<f64>,
     /// What was made one because it could not be told apart.
     pub settled: Assumption,
 }
@@ -107,9 +109,9 @@ pub fn mesh_patches(
     tolerance: f64,
 ) -> Result<MeshContacts, ContactFaults> {
     let origin = middle(assembly);
-    let (normals, turned) = known::normals(assembly, accuracy, tolerance);
+    let normals = known::normals(assembly, accuracy, tolerance);
     let shapes: Vec<Shape> =
-        assembly.ids().map(|p| Shape::new(assembly, p, origin, &normals[p.at()])).collect();
+        assembly.ids().map(|p| Shape::new(assembly, p, origin, &normals.of[p.at()])).collect();
     let pairs = near_pairs(&shapes, tolerance);
     let found: Vec<Result<MeshContacts, Overlap>> = pairs
         .par_iter()
@@ -130,7 +132,8 @@ pub fn mesh_patches(
         all
     });
     let mut all = with_settled_normals(all, tolerance);
-    all.settled.turn = all.settled.turn.max(turned);
+    all.settled.turn = all.settled.turn.max(normals.turned);
+    all.off = all.patches.iter().map(|p| normals.off[p.a.at()] + normals.off[p.b.at()]).collect();
     Ok(all)
 }
 
@@ -200,7 +203,7 @@ fn touching(a: &Shape, b: &Shape, origin: DVec3, tolerance: f64) -> MeshContacts
         Assumed { a: a.part, b: b.part, corners, why: q.why, normals }
     };
     let assumed = small.passed.iter().map(assumed).collect();
-    MeshContacts { patches, facts, assumed, settled: Assumption::default() }
+    MeshContacts { patches, facts, assumed, off: Vec::new(), settled: Assumption::default() }
 }
 
 /// An edge that stays within the tolerance of a face over a stretch may lean by that over its length.

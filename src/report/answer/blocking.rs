@@ -185,6 +185,6 @@ pub fn dbg(asm: &Assembly, direction: [f64; 3], graph: &Dbg, tied: &Dbg) -> DbgA
     });
     let mut arcs: Vec<ArcAnswer> = arcs.collect();
     let place = |id: &String| asm.parts.iter().position(|p| p.id == *id);
-    arcs.sort_by_key(|a| (place(&a.from), place(&a.to)));
+    arcs.sort_by_cached_key(|a| (place(&a.from), place(&a.to)));
     DbgAnswer { direction, arcs, components: sets(asm, &components), leave: sets(asm, &leave) }
 }

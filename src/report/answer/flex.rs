@@ -5,13 +5,15 @@
 use super::{Certificate, Source, certificate, checksum, ids};
 use crate::assembly::PartIx;
 use crate::contact::Joined;
+use crate::cores::{Core, Set};
 use crate::flex::symmetry::Symmetry;
-use crate::flex::{Ask, Cut, Enough, Flex, Listing, Set, Wanted};
+use crate::flex::{Ask, Cut, Enough, Flex, Listing, Wanted};
 use crate::sequence::Plan;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Parts that are locked by themselves: at least one of them must be flexible.
+/// Parts that are locked by themselves: at least one of them must be flexible. Locks of meshes are listed only where they
+/// survive every change of the contacts within what the files' digits leave open.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct CoreAnswer {
     pub parts: Vec<String>,
@@ -65,6 +67,10 @@ pub struct FlexAnswer {
     pub cores: Vec<CoreAnswer>,
     /// Sets that no plan took apart although they are not proven locked.
     pub unproven: Vec<Vec<String>>,
+    /// Sets of meshes that are locked as written, but not shown to be whatever the files' digits leave open of their contacts:
+    /// no bound rests on them.
+    #[serde(default)]
+    pub doubtful: Vec<Vec<String>>,
     /// Air on each face of a contact, mm; 0: the parts as they touch.
     pub clearance_mm: f64,
     /// Locks and plans tried, each counted as its parts squared and its contact patches.
@@ -99,6 +105,7 @@ pub fn flex(joined: &Joined, flex: &Flex, ask: &Ask, source: Source) -> FlexAnsw
         symmetries: flex.symmetries.iter().map(|s| symmetry(joined, s)).collect(),
         cores: flex.cores.iter().map(|c| core(joined, c)).collect(),
         unproven: flex.unproven.iter().map(named).collect(),
+        doubtful: flex.doubtful.iter().map(named).collect(),
         clearance_mm: ask.clearance * asm.mm_per_unit,
         work: flex.work,
         remarks: joined.remarks.clone(),
@@ -123,12 +130,13 @@ fn listed(list: Listing) -> &'static str {
     }
 }
 
-fn core(joined: &Joined, c: &crate::flex::Core) -> CoreAnswer {
+fn core(joined: &Joined, c: &Core) -> CoreAnswer {
     let asm = &joined.assembly;
-    let inside: Vec<PartIx> = c.parts.iter().copied().collect();
-    let held: Vec<PartIx> = asm.held().filter(|p| inside.contains(p)).collect();
-    let still = if held.is_empty() { inside[..1].to_vec() } else { held };
-    CoreAnswer { parts: ids(asm, &inside), certificate: certificate(asm, &still, &c.stress) }
+    let named = |set: &Set| set.iter().copied().collect::<Vec<PartIx>>();
+    CoreAnswer {
+        parts: ids(asm, &named(&c.parts)),
+        certificate: certificate(asm, &named(&c.still), &c.stress),
+    }
 }
 
 fn symmetry(joined: &Joined, s: &Symmetry) -> SymmetryOfParts {

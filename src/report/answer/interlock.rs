@@ -2,8 +2,9 @@
 
 use super::{Certificate, MotionAnswer, Proof, Word, certificate, ids, proof, written};
 use crate::assembly::{Assembly, PartIx};
+use crate::cores::{Core, Firm, Set};
 use crate::interlock::keys::{Complete, Directions, Least};
-use crate::interlock::{Core, Interlock, Key, Set, Whole};
+use crate::interlock::{Interlock, Key, Whole};
 use crate::locking::{Check, Verdict};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -53,7 +54,20 @@ pub struct LockedCore {
     pub parts: Vec<String>,
     /// `largest`: in no larger one; `smallest`: no part of it can be left out.
     pub kind: String,
+    /// `holds`: the contacts are exact, or the lock survives every change of them within what the meshes' digits leave open;
+    /// `unproven`: locked as written, and that is not shown.
+    #[serde(default = "holds")]
+    pub within_digits: String,
     pub certificate: Certificate,
+}
+
+fn holds() -> String {
+    firm(Firm::Holds)
+}
+
+/// As it is written.
+pub fn firm(firm: Firm) -> String {
+    if firm == Firm::Holds { "holds" } else { "unproven" }.into()
 }
 
 /// How far was looked.
@@ -84,7 +98,7 @@ pub struct InterlockAnswer {
 pub fn interlock(asm: &Assembly, check: &Check, found: &Interlock) -> InterlockAnswer {
     let (word, proof) = whole(asm, check, &found.whole);
     let (keys, cores) = (&found.keys, &found.cores);
-    let largest = cores.largest.iter().map(|c| core(asm, c, "largest"));
+    let largest = cores.found.largest.iter().map(|c| core(asm, c, "largest"));
     let smallest = cores.smallest.iter().map(|c| core(asm, c, "smallest"));
     let sets = |sets: &mut dyn Iterator<Item = &Set>| sets.map(|s| names(asm, s)).collect();
     InterlockAnswer {
@@ -98,8 +112,8 @@ pub fn interlock(asm: &Assembly, check: &Check, found: &Interlock) -> InterlockA
                 Complete::All => None,
                 Complete::UpTo(n) => Some(n),
             },
-            undecided: sets(&mut keys.undecided.iter().chain(&cores.undecided)),
-            not_asked: sets(&mut cores.not_asked.iter()),
+            undecided: sets(&mut keys.undecided.iter().chain(&cores.found.undecided)),
+            not_asked: sets(&mut cores.found.not_asked.iter()),
         },
     }
 }
@@ -139,6 +153,7 @@ fn core(asm: &Assembly, c: &Core, kind: &str) -> LockedCore {
     LockedCore {
         parts: names(asm, &c.parts),
         kind: kind.into(),
+        within_digits: firm(c.firm),
         certificate: certificate(asm, &still, &c.stress),
     }
 }

@@ -7,6 +7,8 @@ mod blocking;
 pub mod fab;
 mod flex;
 mod interlock;
+mod play;
+mod release;
 pub mod repeats;
 mod sampling;
 mod weave;
@@ -16,10 +18,14 @@ pub use blocking::{
 };
 pub use flex::{CoreAnswer, FlexAnswer, OrbitAnswer, SymmetryOfParts, flex};
 pub use interlock::{
-    DirectionsAnswer, InterlockAnswer, InterlockWord, KeyAnswer, LockedCore, SearchedAnswer, interlock,
+    DirectionsAnswer, InterlockAnswer, InterlockWord, KeyAnswer, LockedCore, SearchedAnswer, firm, interlock,
+};
+pub use play::{AxisPlay, Followed, PartPlay, PlayAnswer, PlayWord, play, word as play_word};
+pub use release::{
+    BracketAnswer, Evidence, Length, ProcessRelease, ReleaseAnswer, ReleaseWord, bracket, length, needs_none,
 };
 pub use repeats::RepeatsAnswer;
-pub use sampling::{check_of, refined};
+pub use sampling::{check_of, refined, stress_of};
 pub use weave::{WeaveAnswer, weave};
 
 use crate::assembly::{Assembly, PartIx};
@@ -176,6 +182,7 @@ pub enum Sealed {
     Plan(Box<PlanAnswer>),
     Flex(Box<FlexAnswer>),
     Repeats(Box<RepeatsAnswer>),
+    Release(Box<ReleaseAnswer>),
 }
 
 pub fn ids(assembly: &Assembly, parts: &[PartIx]) -> Vec<String> {

@@ -2,7 +2,7 @@
 //!
 //! Not promised: that a proof holds; `verify` finds out.
 
-use super::{CheckAnswer, Proof, Word, checksum};
+use super::{Certificate, CheckAnswer, Proof, Word, checksum};
 use crate::assembly::Assembly;
 use crate::locking::{Check, Force, Gap, Motion, Row, Stress, Twist, Verdict};
 use crate::sampling::Refined;
@@ -26,18 +26,21 @@ pub fn check_of(assembly: &Assembly, answer: &CheckAnswer) -> Option<Check> {
     })
 }
 
+/// The self-stress that a certificate was written from; none where it names parts that are not there.
+pub fn stress_of(assembly: &Assembly, c: &Certificate) -> Option<Stress> {
+    let part = |id: &String| assembly.ids().find(|&p| assembly.part(p).id == *id);
+    let force = |f: &super::ForceAnswer| {
+        let (normal, point) = (DVec3::from_array(f.normal), DVec3::from_array(f.point));
+        Some(Force { row: Row { a: part(&f.a)?, b: part(&f.b)?, normal, point }, size: f.size })
+    };
+    let forces = c.forces.iter().map(force).collect::<Option<_>>()?;
+    Some(Stress { forces, rank: c.rank, residual: c.residual, pivot_ratio: 0.0 })
+}
+
 fn verdict(assembly: &Assembly, proof: &Proof) -> Option<Verdict> {
     let part = |id: &String| assembly.ids().find(|&p| assembly.part(p).id == *id);
     Some(match proof.verdict {
-        Word::Locked => {
-            let c = proof.certificate.as_ref()?;
-            let force = |f: &super::ForceAnswer| {
-                let (normal, point) = (DVec3::from_array(f.normal), DVec3::from_array(f.point));
-                Some(Force { row: Row { a: part(&f.a)?, b: part(&f.b)?, normal, point }, size: f.size })
-            };
-            let forces = c.forces.iter().map(force).collect::<Option<_>>()?;
-            Verdict::Locked(Stress { forces, rank: c.rank, residual: c.residual, pivot_ratio: 0.0 })
-        }
+        Word::Locked => Verdict::Locked(stress_of(assembly, proof.certificate.as_ref()?)?),
         Word::Free => {
             let m = proof.motion.as_ref()?;
             let twist = |t: &super::TwistAnswer| {

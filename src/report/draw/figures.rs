@@ -12,8 +12,6 @@ use crate::assembly::{Assembly, PartIx};
 use crate::locking::{Motion, Stress};
 use crate::report::content::{Format, Picture};
 use crate::report::words::movers;
-use crate::sequence::Step;
-use crate::solid::Solid;
 use glam::DVec3;
 use std::io;
 
@@ -132,48 +130,6 @@ pub fn moving(assembly: &Assembly, motion: &Motion) -> Figure {
     }
 }
 
-/// One move of a plan as it is put together, as from the parts' places in the assembly: the moved parts where they come from, with an arrow behind them, and
-/// the parts that they join in place. Parts of other moves are left out, yet the view is that of all.
-pub fn step(assembly: &Assembly, step: &Step) -> Figure {
-    let mut scene = Scene::of(assembly, View::default());
-    let movers = step.motion.movers(&step.parts);
-    let size = extent(&scene);
-    let (mut pushed, mut away) = (Vec::new(), DVec3::ZERO);
-    for (part, item) in assembly.parts.iter().zip(&mut scene.items) {
-        if let Some((_, motion)) = movers.iter().find(|(parts, _)| parts.contains(&part.id)) {
-            let before = item.points().sum::<DVec3>();
-            item.pose = motion.at(1.0) * item.pose;
-            away += item.points().sum::<DVec3>() - before;
-            pushed.extend(item.points());
-        } else if !step.stays.contains(&part.id) {
-            item.opacity = Opacity::Hidden;
-        }
-    }
-    away /= pushed.len().max(1) as f64;
-    scene
-        .items
-        .extend(push(&pushed, away, size * 0.25).map(|s| Item::sign(&s, Colour::srgb(palette::MOTION))));
-    let moved = step.parts.join(", ");
-    Figure {
-        name: "step",
-        alt: format!("{moved} on the way to {}, with an arrow.", step.stays.join(", ")),
-        caption: match step.motion.straight() {
-            Some(shift) => format!("{moved}: {:.1} mm straight in.", shift.distance_mm),
-            None => format!("{moved}: turned in."),
-        },
-        scene,
-    }
-}
-
-/// An arrow that pushes at the far end of what has come by `away`.
-fn push(points: &[DVec3], away: DVec3, length: f64) -> Option<Solid> {
-    let along = away.try_normalize()?;
-    let middle = points.iter().sum::<DVec3>() / points.len().max(1) as f64;
-    let far = points.iter().map(|p| (*p - middle).dot(along)).reduce(f64::max)?;
-    let tip = middle + along * (far + length * 0.1);
-    glyph::arrow(tip + along * length, tip, length * 0.06)
-}
-
 /// The largest contact forces of a self-stress, at most [`MOST_FORCES`], each pushing on part `b` of its contact.
 pub fn forces(assembly: &Assembly, stress: &Stress) -> Figure {
     let mut scene = faint(assembly);
@@ -213,7 +169,7 @@ fn faint(assembly: &Assembly) -> Scene {
 }
 
 /// Longest side of the box around all items.
-fn extent(scene: &Scene) -> f64 {
+pub(super) fn extent(scene: &Scene) -> f64 {
     let points = || scene.items.iter().flat_map(Item::points);
     let lo = points().fold(DVec3::INFINITY, DVec3::min);
     let hi = points().fold(DVec3::NEG_INFINITY, DVec3::max);

@@ -7,6 +7,7 @@
 //! solid -> mesh -> scene -> camera -> layers (which facet does each sample see) -> light -> ink -> image
 //! ```
 
+pub mod arcs;
 pub mod camera;
 pub mod figures;
 pub mod glyph;
@@ -20,11 +21,13 @@ pub mod palette;
 pub mod scene;
 pub mod sheet;
 pub mod sphere;
+pub mod steps;
 mod strokes;
+pub mod vector;
 
 pub use camera::{Projection, View};
 pub use image::{Image, Size, beside, write_png};
 pub use mesh::Mesh;
-pub use paint::render;
+pub use paint::{Pen, render, render_with};
 pub use palette::Colour;
 pub use scene::{Background, Item, Opacity, Scene, Shadow};

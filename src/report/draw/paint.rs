@@ -21,8 +21,17 @@ const BAND: usize = 24;
 /// How much of the surface a crease's ink covers; outlines cover all.
 const CREASE_INK: f64 = 0.6;
 
+/// Whether outlines and creases are drawn into the image.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Pen {
+    Lines,
+    /// Shading alone: lines are to come as vectors over it.
+    None,
+}
+
 struct Studio<'a> {
     look: Look<'a>,
+    pen: Pen,
     light: Light,
     size: Size,
     pens: Pens,
@@ -34,8 +43,13 @@ struct Studio<'a> {
 /// Numbers of triangles for each band.
 type Bins = Vec<Vec<u32>>;
 
-/// Draws the scene. An empty scene gives an empty picture.
+/// Draws the scene with its lines. An empty scene gives an empty picture.
 pub fn render(scene: &Scene, size: Size) -> Image {
+    render_with(scene, size, Pen::Lines)
+}
+
+/// The same with or without lines.
+pub fn render_with(scene: &Scene, size: Size, pen: Pen) -> Image {
     let camera = Camera::fit(&scene.view, scene.items.iter().flat_map(|i| i.points()), size);
     let stage = Stage::of(scene, &camera, SAMPLES);
     let pens = Pens::of(size.width().min(size.height()), SAMPLES);
@@ -45,6 +59,7 @@ pub fn render(scene: &Scene, size: Size) -> Image {
         solid: bin(&|i| opacity(i) == Opacity::Solid),
         ghosts: ghosts(scene, &camera).into_iter().map(|(i, alpha)| (alpha, bin(&|k| k == i))).collect(),
         light: Light::of(scene, &scene.view),
+        pen,
         look: Look { scene, stage: &stage, camera: &camera },
         size,
         pens,
@@ -127,7 +142,10 @@ impl Studio<'_> {
     }
 
     fn inked(&self, layer: Layer, alpha: f64) -> Sheet {
-        let ink = self.look.lines(&layer, &self.pens);
+        let ink = match self.pen {
+            Pen::Lines => self.look.lines(&layer, &self.pens),
+            Pen::None => vec![Line::None; layer.nearest.len()],
+        };
         Sheet { layer, ink, alpha }
     }
 

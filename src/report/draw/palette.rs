@@ -38,7 +38,12 @@ pub const MOTION: [u8; 3] = [0, 120, 90];
 /// The colour of a part: warm for `weft-J`, cool for `warp-I` (the ids of woven assemblies), else by its place. Pieces
 /// of one strand (`weft-J/N`) are two shades apart.
 pub fn of_part(id: &str, place: usize) -> Colour {
-    let pick = |table: &[[u8; 3]], k: i64| Colour::srgb(table[k.rem_euclid(table.len() as i64) as usize]);
+    Colour::srgb(bytes_of_part(id, place))
+}
+
+/// The same as the bytes of a style sheet.
+pub fn bytes_of_part(id: &str, place: usize) -> [u8; 3] {
+    let pick = |table: &[[u8; 3]], k: i64| table[k.rem_euclid(table.len() as i64) as usize];
     match (strand(id, "weft-"), strand(id, "warp-")) {
         (Some((j, n)), _) => pick(&WARM, j.wrapping_add(n.wrapping_mul(2))),
         (_, Some((i, n))) => pick(&COOL, i.wrapping_add(n.wrapping_mul(2))),

@@ -12,7 +12,7 @@ pub fn sheet(p: &PackageReport) -> Option<String> {
         return None;
     }
     let mut s = format!(
-        "# Mold sheet: {}\n\nAll files are in `molds/`, in millimetres, scale already applied: print at 100 %, with layer, material and XY compensation 0 as on the print sheet or in the bill. Halves print with the parting face up (the upper one turned over); box walls stand as they are; a pattern board carries half of the master on each side: supports below. A pattern board holds the master already; a single master is for a board of your own, or to try the fit.\n",
+        "# Mold sheet: {}\n\nAll files are in `molds/`, in millimetres, scale already applied: print at 100 %, with layer, material and XY compensation 0 as on the print sheet or in the bill. The plates `print/*-molds-plate-*` hold all prints as they lie: halves with the parting face up (the upper one turned over), side cores on their grips; box walls stand as they are; a pattern board carries half of the master on each side: supports below. A pattern board holds the master already; a single master is for a board of your own, or to try the fit.\n",
         p.report.name
     );
     for m in &p.mold_sheets {
@@ -27,7 +27,8 @@ pub fn sheet(p: &PackageReport) -> Option<String> {
 
 fn mold(m: &MoldReport) -> String {
     let d = m.pull.direction;
-    let mut s = format!(
+    let mut s = String::new();
+    let opens = format!(
         "\nOpens along ({}, {}, {}) of the part as it stands in the assembly. {} directions were looked at: {}. Undercut: {} mm2, {} mm deep. Faces with less draft than asked for: {} mm2.\n",
         short(d.x),
         short(d.y),
@@ -38,6 +39,10 @@ fn mold(m: &MoldReport) -> String {
         short(m.pull.undercut_reach_mm),
         short(m.low_draft_mm2)
     );
+    // A tree does not open.
+    if m.route != Route::LostWax {
+        s += &opens;
+    }
     s += &match &m.parting {
         Some(Parting::Plane { height_mm }) => {
             format!("\nThe halves part in a plane, {} mm above the part's foot.\n", short(*height_mm))
@@ -60,7 +65,7 @@ fn mold(m: &MoldReport) -> String {
     let volume = |v: &Volume| {
         vec![
             v.of.clone(),
-            format!("{:.2}", v.mm3 / 1000.0),
+            if v.mm3 > 0.0 { format!("{:.2}", v.mm3 / 1000.0) } else { String::new() },
             v.grams.map_or(String::new(), |g| format!("{g:.1}")),
         ]
     };

@@ -22,6 +22,10 @@ pub fn sheet(p: &PackageReport) -> Option<String> {
         let plates = p.plates.iter().filter(|q| q.process == r.process.name);
         s += &table(&["plate", "bed", "stands on it", "filament"], plates.map(plate));
         let lies = p.layings.iter().filter(|l| r.parts.contains(&l.part));
+        let mut lies = lies.peekable();
+        if lies.peek().is_none() {
+            continue;
+        }
         s += "\nHow each lies (parts of the same shape alike):\n";
         let head = [
             "part",

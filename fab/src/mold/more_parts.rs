@@ -1,0 +1,171 @@
+//! Takes a ready part that no two halves free; gives its rigid mold with side cores, or the finding that none was found.
+//!
+//! The pull of the search is tried, and a few others: the fewest cores win. Not promised: that a mold is found where there
+//! is one; where none is, the silicone route is.
+
+use crate::mesh::{Mesh, area};
+use crate::mold::checks::core_name;
+use crate::mold::cores::{self, Core, Cored};
+use crate::mold::layout::{self, Around};
+use crate::mold::make::{blank, finding, push};
+use crate::mold::plan::Plan;
+use crate::mold::prepare::{self, Ready};
+use crate::mold::rigid::{self, Tools};
+use crate::mold::{Kind, Mold, MoldError, MoldSpec, parting, pictures, two_part};
+use crate::report::{Finding, Severity};
+use crate::solid::Solid;
+use glam::DVec3;
+
+/// Fewer side cores, then a parting surface with less off its plane: less is better.
+type Rank = (usize, f64);
+
+/// A pull with its side cores, not yet made into pieces.
+struct Candidate {
+    ready: Ready,
+    cored: Cored,
+    plan: Plan,
+    rank: Rank,
+}
+
+pub fn mold(part: &Mesh, ready: Ready, spec: &MoldSpec) -> Result<Mold, MoldError> {
+    let pulls = if spec.pull.is_some() { vec![] } else { ready.others.clone() };
+    let mut refused = blank(&ready, spec, Plan::default(), spec.figures.draft.value);
+    let (mut found, mut why) = (vec![], vec![]);
+    let mut keep = |c: Result<Candidate, String>| match c {
+        Ok(candidate) => found.push(candidate),
+        Err(w) => why.push(w),
+    };
+    keep(candidate(ready, spec)?);
+    for pull in pulls {
+        keep(candidate(prepare::along(part, spec, pull)?, spec)?);
+    }
+    found.sort_by(|a, b| a.rank.0.cmp(&b.rank.0).then(a.rank.1.total_cmp(&b.rank.1)));
+    for candidate in found {
+        match built(candidate, spec)? {
+            Ok(mut mold) => {
+                mold.pull.candidates = refused.pull.candidates;
+                return Ok(mold);
+            }
+            Err(w) => why.push(w),
+        }
+    }
+    why.sort();
+    why.dedup();
+    refused.findings.push(refusal(&refused, &why.join("; ")));
+    refused.extras.push(pictures::maps(&refused));
+    Ok(refused)
+}
+
+fn refusal(mold: &Mold, why: &str) -> Finding {
+    let (area, wide) = (mold.pull.undercut_mm2, mold.pull.undercut_reach_mm);
+    let what = format!(
+        "{area:.3} mm2 are undercut in every direction looked at, here {wide:.2} mm wide; a rigid mold in two halves would not open, and none with side cores was found ({why})"
+    );
+    let at = two_part::worst_undercut(mold);
+    finding(mold, Severity::Error, at, what, "take the silicone route, or divide the part")
+}
+
+/// The side cores of a pull, or why there are none.
+fn candidate(mut ready: Ready, spec: &MoldSpec) -> Result<Result<Candidate, String>, MoldError> {
+    let f = &spec.figures;
+    let filled = cores::filled(&ready);
+    let (mesh, snap, around) = (filled.mesh(), ready.framed.snap, Around::printed(f));
+    ready.plane = parting::plane(&mesh, &parting::looks(&mesh, snap), snap);
+    let plan = layout::plan(&ready.framed.mesh, ready.plane.height, &ready.tops, f, around);
+    let tan = f.draft.value.to_radians().tan();
+    let Some(cored) = cores::cores(&ready, filled, (plan.low, plan.high), tan)? else {
+        return Ok(Err("some undercut is seen from no direction outside".into()));
+    };
+    let rooms: Vec<Solid> = cored.cores.iter().map(|c| c.room.clone()).collect();
+    let (plan, shut) = layout::clear(&plan, &rooms, f, around)?;
+    if shut > 0 {
+        return Ok(Err("a side core would stand in the way of the sprue or a vent".into()));
+    }
+    if plan.keys.len() < KEYS || plan.bolts.len() < BOLTS {
+        return Ok(Err("side cores leave no room for keys and screws".into()));
+    }
+    let rank = (cored.cores.len(), ready.plane.wrong);
+    Ok(Ok(Candidate { ready, cored, plan, rank }))
+}
+
+/// A mold closes one way only by three keys, and stays closed by two screws.
+const KEYS: usize = 3;
+const BOLTS: usize = 2;
+
+/// The mold of a candidate, or why it can not be made.
+fn built(candidate: Candidate, spec: &MoldSpec) -> Result<Result<Mold, String>, MoldError> {
+    let Candidate { ready, cored, plan, .. } = candidate;
+    let mut mold = blank(&ready, spec, plan, spec.figures.draft.value);
+    mold.filled_mm3 = Some(cored.left_mm3);
+    let below = two_part::below(&mold, &cored.filled, &ready)?;
+    let tools = Tools::of(&mold.plan, &spec.figures)?;
+    let rooms = Solid::all(cored.cores.iter().map(|c| c.room.clone()).collect());
+    for (name, half, pull) in rigid::halves(&cored.filled, &below, &mold.plan, &tools)? {
+        match whole(half.minus(&rooms), ready.solid.volume()) {
+            Ok(half) => push(&mut mold, name, Kind::Half, &half, pull, 1),
+            Err(off) => return Ok(Err(format!("side cores would cut {off:.3} mm3 off the {name} half"))),
+        }
+    }
+    for (k, core) in cored.cores.iter().enumerate() {
+        push(&mut mold, &core_name(k), Kind::Core, &core.solid, core.pull, 1);
+    }
+    if let Some(wrong) = mold.findings.iter().find(|f| f.severity == Severity::Error) {
+        return Ok(Err(wrong.what.clone()));
+    }
+    push(&mut mold, "filled", Kind::Filled, &cored.filled, DVec3::ZERO, 0);
+    for (k, core) in cored.cores.iter().enumerate() {
+        push(&mut mold, &format!("{}-room", core_name(k)), Kind::Room, &core.room, DVec3::ZERO, 0);
+    }
+    assign(&mut mold, &cored.cores);
+    told(&mut mold, &cored);
+    two_part::finish(mold, &cored.filled, &below, &tools).map(Ok)
+}
+
+/// A half in one body: crumbs within what the cavity may be off are left away; more than that, in mm3, is too much.
+fn whole(half: Solid, part_mm3: f64) -> Result<Solid, f64> {
+    let half = half.thick(cores::FINE);
+    let mut bodies = half.bodies();
+    bodies.sort_by(|a, b| b.volume().total_cmp(&a.volume()));
+    let off = bodies.iter().skip(1).map(Solid::volume).sum::<f64>();
+    match bodies.len() {
+        0 | 1 => Ok(half),
+        _ if off <= cores::NOTHING * part_mm3 => Ok(bodies.swap_remove(0)),
+        _ => Err(off),
+    }
+}
+
+/// Facets that a core forms get its name, and their draft along its pull.
+fn assign(mold: &mut Mold, cores: &[Core]) {
+    let meshes: Vec<Mesh> = cores.iter().map(|c| c.solid.mesh()).collect();
+    let hidden: Vec<usize> =
+        (0..mold.maps.half.len()).filter(|&t| mold.maps.undercut_mm2[t] > 0.0 || wall(mold, t)).collect();
+    for t in hidden {
+        if let Some(k) = cores::forming(&meshes, &mold.part, t) {
+            let [a, b, c] = mold.part.corners(t);
+            let along = (b - a).cross(c - a).normalize_or_zero().dot(cores[k].pull).abs();
+            mold.maps.half[t] = core_name(k);
+            mold.maps.draft_deg[t] = along.min(1.0).asin().to_degrees();
+            mold.maps.undercut_mm2[t] = 0.0;
+        }
+    }
+    let least = mold.figures.draft.value;
+    let low = (0..mold.maps.draft_deg.len()).filter(|&t| mold.maps.draft_deg[t] < least);
+    mold.maps.low_draft_mm2 = low.map(|t| area(mold.part.corners(t))).sum();
+}
+
+/// Walls along the main pull shadow nothing, and may yet be a core's.
+fn wall(mold: &Mold, t: usize) -> bool {
+    mold.maps.draft_deg[t] < mold.figures.draft.value
+}
+
+fn told(mold: &mut Mold, cored: &Cored) {
+    let (area, n) = (mold.pull.undercut_mm2, cored.cores.len());
+    let what = format!(
+        "{area:.1} mm2 are undercut along the pull; {n} side core{} form{} them and leave{} first",
+        if n == 1 { "" } else { "s" },
+        if n == 1 { "s" } else { "" },
+        if n == 1 { "s" } else { "" },
+    );
+    let found = finding(mold, Severity::Note, vec![], what, "follow the order of the mold sheet");
+    mold.findings.push(found);
+}

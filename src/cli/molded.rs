@@ -1,0 +1,133 @@
+//! Takes a part of an assembly; gives the mold for it, as it opens: a figure, and an exhibit for a page.
+//!
+//! The part is molded as it touches, without clearance or shrinkage: to see whether and how it opens. `fab` makes the
+//! mold for use.
+
+use super::load::Placed;
+use super::told::Trouble;
+use crate::assembly::PartIx;
+use crate::report::content::{Chapter, Tone};
+use crate::report::draw::figures::Figure;
+use crate::report::draw::mesh::CreaseAngle;
+use crate::report::draw::{Background, Colour, Item, Mesh, Scene, View, palette};
+use crate::report::viewer::{self, Exhibit};
+use clap::ValueEnum;
+use glam::DVec3;
+use std::sync::Arc;
+use weavelock_fab::mesh;
+use weavelock_fab::mold::figures::Figures;
+use weavelock_fab::mold::{self, Mold, MoldSpec, Piece, Route};
+
+#[derive(ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
+pub enum MoldRoute {
+    /// Two printed halves
+    Rigid,
+    /// A master on its parting board, boxes for two pours
+    Silicone,
+    /// A tree in a flask
+    LostWax,
+}
+
+fn made(placed: &Placed, part: PartIx, route: MoldRoute) -> Result<Mold, Trouble> {
+    let asm = &placed.joined.assembly;
+    let word = |e: &dyn std::fmt::Display| Trouble::Word(format!("error: {e}"));
+    let solid = asm.solid(part);
+    let vertices = solid.vertices.iter().map(|v| *v * asm.mm_per_unit).collect();
+    let body = mesh::Mesh { vertices, triangles: solid.triangles().collect() };
+    let route = match route {
+        MoldRoute::Rigid => Route::Rigid,
+        MoldRoute::Silicone => Route::Silicone,
+        MoldRoute::LostWax => Route::LostWax,
+    };
+    let figures = Figures::embedded().map_err(|e| word(&e))?;
+    mold::make(&body, &MoldSpec::new(&asm.part(part).id, route, figures)).map_err(|e| word(&e))
+}
+
+/// The pieces that are made; others stand for the OpenSCAD sources alone.
+fn made_pieces(mold: &Mold) -> impl Iterator<Item = &Piece> {
+    mold.pieces.iter().filter(|p| p.copies > 0)
+}
+
+/// Why there are no pieces.
+fn refused(mold: &Mold) -> String {
+    let found: Vec<String> = mold.findings.iter().map(|f| format!("{} ({})", f.what, f.remedy)).collect();
+    format!("no mold: {}", found.join("; "))
+}
+
+/// The mold opened along its pull, the part between; `Err` in words where there is none.
+pub fn figure(placed: &Placed, part: PartIx, route: MoldRoute) -> Result<Result<Figure, String>, Trouble> {
+    let mold = made(placed, part, route)?;
+    if mold.pieces.is_empty() {
+        return Ok(Err(refused(&mold)));
+    }
+    let (lo, hi) = mold.part.bounds();
+    let gap = (hi - lo).max_element() * OPEN;
+    let item = |k: usize, m: &mesh::Mesh, offset: DVec3| {
+        let colour = Colour::srgb(palette::OTHER[k % palette::OTHER.len()]);
+        Item { offset, ..Item::new(Arc::new(drawn(m)), colour) }
+    };
+    let mut items = vec![item(0, &mold.part, DVec3::ZERO)];
+    items.extend(made_pieces(&mold).enumerate().map(|(k, p)| item(k + 1, &p.mesh, p.pull * gap)));
+    let id = &placed.joined.assembly.part(part).id;
+    Ok(Ok(Figure {
+        name: "mold",
+        scene: Scene { items, view: View::default(), background: Background::Transparent },
+        alt: format!("The mold of {id}, opened along its pull, with the part between."),
+        caption: format!("{id}: {} pieces, opened.", made_pieces(&mold).count()),
+    }))
+}
+
+/// How far a piece is pulled off, in the part's longest side.
+const OPEN: f64 = 0.8;
+
+/// The mold as an exhibit with what was measured of it.
+pub fn exhibit(
+    placed: &Placed,
+    part: PartIx,
+    route: MoldRoute,
+) -> Result<(Option<Exhibit>, Chapter), Trouble> {
+    let mold = made(placed, part, route)?;
+    let id = &placed.joined.assembly.part(part).id;
+    if mold.pieces.is_empty() {
+        let headline = format!("No mold of {id} by this route.");
+        return Ok((
+            None,
+            Chapter { tone: Tone::Bad, headline, words: vec![refused(&mold)], ..Chapter::default() },
+        ));
+    }
+    let mut pieces = vec![(id.clone(), drawn(&mold.part), DVec3::ZERO)];
+    pieces.extend(made_pieces(&mold).map(|p| (p.name.clone(), drawn(&p.mesh), p.pull)));
+    let pull = mold.pull.direction;
+    let measured = mold.measured.iter().map(|m| {
+        (
+            m.of.clone(),
+            format!(
+                "{:.4} {} (limit {:.4}, {})",
+                m.value,
+                m.unit,
+                m.limit,
+                if m.kept { "kept" } else { "not kept" }
+            ),
+        )
+    });
+    let mut facts = vec![
+        ("pull".to_string(), format!("({:.3}, {:.3}, {:.3}) in the part's frame", pull.x, pull.y, pull.z)),
+        ("undercut".into(), format!("{:.2} mm2", mold.pull.undercut_mm2)),
+    ];
+    facts.extend(measured);
+    let chapter = Chapter {
+        tone: Tone::Plain,
+        headline: format!(
+            "A mold of {id} in {} pieces; choose it in the 3D view to see it open.",
+            mold.pieces.len()
+        ),
+        words: mold.findings.iter().map(|f| format!("{} ({})", f.what, f.remedy)).collect(),
+        facts,
+        ..Chapter::default()
+    };
+    Ok((Some(viewer::of_mold(&format!("mold of {id}"), pieces)), chapter))
+}
+
+fn drawn(mesh: &mesh::Mesh) -> Mesh {
+    Mesh::of(&super::pictured::solid(mesh), CreaseAngle::default())
+}

@@ -1,0 +1,195 @@
+//! Takes an assembly; tells how much clearance releases its lock, and what a process does to that.
+//!
+//! Not promised: anything beyond what `release` and the planner promise.
+
+use super::args::PuzzleArgs;
+use super::load::{self, Placed};
+use super::questions::{locked, planned};
+use super::told::{News, Told, Trouble};
+use super::words::fact;
+use crate::assembly::PartIx;
+use crate::release::{At, Range, bracket};
+use crate::report::answer::{
+    self, BracketAnswer, Length, PlanAnswer, ProcessRelease, ReleaseAnswer, ReleaseWord, Sealed,
+};
+use crate::report::content::{Chapter, Column, Table, Tone};
+use crate::sequence::Outcome;
+use crate::sequence::clearance::with_clearance;
+use crate::solid::Solid;
+use crate::verify;
+use clap::Args;
+use glam::DVec3;
+use std::path::PathBuf;
+use weavelock_fab::process::Process;
+
+#[derive(Args, Debug)]
+pub struct Asked {
+    pub file: PathBuf,
+    /// Say whether this process opens the lock: `--process fdm-pla`, `--process my.toml`
+    #[arg(long, value_name = "NAME|FILE")]
+    pub process: Option<String>,
+}
+
+pub fn release(asked: &Asked, puzzle: &PuzzleArgs) -> Result<Told, Trouble> {
+    let placed = load::spec(&asked.file, puzzle)?.joined()?;
+    let wrong = |e: weavelock_fab::process::ProcessError| Trouble::Word(format!("error: {e}"));
+    let process = asked.process.as_deref().map(Process::find).transpose().map_err(wrong)?;
+    let process = process.map(|p| (p.name, p.clearance.value));
+    let answer = released(&placed, process);
+    Ok(told(&answer))
+}
+
+pub fn released(placed: &Placed, process: Option<(String, f64)>) -> ReleaseAnswer {
+    let joined = &placed.joined;
+    let all: Vec<PartIx> = joined.assembly.ids().collect();
+    let zero = locked(joined, &all);
+    let none = if zero.is_some() { None } else { Some(planned(placed, &all, 0.0)) };
+    let brackets = match none.filter(|p| p.plan.outcome == Outcome::Assembled) {
+        Some(plan) => vec![answer::needs_none(joined, plan)],
+        None => vec![answer::bracket(joined, STRAIGHT, &searched(placed, &all), zero.as_ref())],
+    };
+    let best = brackets.iter().filter_map(|b| b.hi).map(|h| h.clearance_mm).fold(f64::INFINITY, f64::min);
+    let answer = ReleaseAnswer {
+        verb: "release".into(),
+        name: joined.assembly.name.clone(),
+        outcome: match best {
+            0.0 => ReleaseWord::NeedsNone,
+            b if b.is_finite() => ReleaseWord::Opens,
+            _ => ReleaseWord::NotFound,
+        },
+        certificate: zero,
+        process: process.map(|(name, mm)| at_process(&brackets, name, mm)),
+        brackets,
+        remarks: joined.remarks.clone(),
+        source: placed.source.clone(),
+        checksum: String::new(),
+    };
+    ReleaseAnswer { checksum: answer::checksum(&answer), ..answer }
+}
+
+const STRAIGHT: &str = "straight moves of parts and groups";
+
+/// Clearances from this share of the smallest part's box diagonal on are tried, doubled while nothing comes apart.
+const START_SHARE: f64 = 1.0 / 256.0;
+/// A hundredth of a millimetre on a part of 160 mm: nobody makes less.
+const LEAST_SHARE: f64 = 1.0 / 16384.0;
+
+fn searched(placed: &Placed, all: &[PartIx]) -> crate::release::Bracket<PlanAnswer> {
+    let (asm, patches) = (&placed.joined.assembly, &placed.joined.patches);
+    let size = asm.ids().map(|p| diagonal(asm.solid(p))).fold(f64::INFINITY, f64::min);
+    let range = Range { start: size * START_SHARE, least: size * LEAST_SHARE, most: size / 2.0 };
+    bracket(range, |clearance| {
+        if let Err(why) = with_clearance(asm, patches, clearance) {
+            return At::Gone(why.to_string());
+        }
+        let plan = planned(placed, all, clearance * asm.mm_per_unit);
+        if plan.plan.outcome != Outcome::Assembled {
+            return At::NotFound(left(&plan));
+        }
+        match verify::answer(&Sealed::Plan(Box::new(plan.clone()))) {
+            Ok(v) if v.valid => At::Apart(plan),
+            Ok(v) => At::NotFound(format!("a plan was found, but not confirmed: {}", v.why)),
+            Err(why) => At::NotFound(format!("a plan was found, but not confirmed: {why}")),
+        }
+    })
+}
+
+fn diagonal(solid: &Solid) -> f64 {
+    let lo = solid.vertices.iter().fold(DVec3::INFINITY, |m, v| m.min(*v));
+    let hi = solid.vertices.iter().fold(DVec3::NEG_INFINITY, |m, v| m.max(*v));
+    (hi - lo).length()
+}
+
+fn left(plan: &PlanAnswer) -> String {
+    let stuck: Vec<String> = plan.plan.stuck.iter().map(|s| s.parts.len().to_string()).collect();
+    let s = plan.plan.searched;
+    let of = if stuck.is_empty() { "none".to_string() } else { stuck.join(" and ") };
+    format!("{of} parts stayed together after {} directions in {} sets", s.directions, s.sets)
+}
+
+fn at_process(brackets: &[BracketAnswer], process: String, clearance_mm: f64) -> ProcessRelease {
+    let hi = brackets.iter().filter_map(|b| b.hi).map(|h| h.clearance_mm).fold(f64::INFINITY, f64::min);
+    let lo = brackets.iter().map(|b| b.lo.clearance_mm).fold(f64::INFINITY, f64::min);
+    let lock = match () {
+        () if clearance_mm >= hi => "opens",
+        () if !hi.is_finite() => "unknown",
+        () if clearance_mm <= lo => "stays",
+        () => "between",
+    };
+    ProcessRelease {
+        process,
+        clearance_mm,
+        lock: lock.into(),
+        lacking_mm: hi.is_finite().then(|| (hi - clearance_mm).max(0.0)),
+        shrinkage: "made up for by the allowance; what is left over scales all parts alike and opens nothing"
+            .into(),
+    }
+}
+
+pub fn told(a: &ReleaseAnswer) -> Told {
+    let news = News::of(a.outcome != ReleaseWord::NotFound);
+    Told { remarks: a.remarks.clone(), ..Told::new(news, a, &a.name, "Release clearance", chapter(a)) }
+}
+
+fn chapter(a: &ReleaseAnswer) -> Chapter {
+    let (tone, headline) = match a.outcome {
+        ReleaseWord::NeedsNone => {
+            (Tone::Good, "It comes apart as it is: no clearance is needed.".to_string())
+        }
+        ReleaseWord::NotFound => {
+            (Tone::Undecided, "No clearance was found that opens it; that proves nothing.".to_string())
+        }
+        ReleaseWord::Opens => (Tone::Good, opens(a)),
+    };
+    let of = |p: &ProcessRelease| {
+        let lacking = p.lacking_mm.filter(|l| *l > 0.0).map(|l| format!("; {l:.3} mm more would open it"));
+        format!("{} mm: {}{}", p.clearance_mm, p.lock, lacking.unwrap_or_default())
+    };
+    let facts = a.process.iter().map(|p| fact(&p.process, of(p))).collect();
+    Chapter {
+        tone,
+        headline,
+        words: a.brackets.iter().map(|b| format!("Lower end ({}): {}.", b.motions, b.why)).collect(),
+        facts,
+        tables: vec![table(a)],
+        ..Chapter::default()
+    }
+}
+
+fn opens(a: &ReleaseAnswer) -> String {
+    let best = a.brackets.iter().filter_map(|b| b.hi.map(|h| (b, h)));
+    let best = best.min_by(|x, y| x.1.clearance_mm.total_cmp(&y.1.clearance_mm));
+    best.map_or(String::new(), |(b, h)| {
+        format!(
+            "It opens somewhere between {:.3} and {:.3} mm of clearance on each face.",
+            b.lo.clearance_mm, h.clearance_mm
+        )
+    })
+}
+
+fn table(a: &ReleaseAnswer) -> Table {
+    let head = ["motions", "end"].map(Column::words).into_iter();
+    let head =
+        head.chain(["clearance, mm", "fit, mm", "of pitch", "as shrinkage, %", "moves"].map(Column::numbers));
+    let row = |b: &BracketAnswer, end: &str, l: Length, moves: String| {
+        let pitch = l.of_pitch.map_or(String::new(), |p| format!("{p:.5}"));
+        let numbers = [format!("{:.4}", l.clearance_mm), format!("{:.4}", l.fit_mm), pitch];
+        [
+            vec![b.motions.clone(), end.into()],
+            numbers.to_vec(),
+            vec![format!("{:.2}", l.shrinkage_percent), moves],
+        ]
+        .concat()
+    };
+    let both = |b: &BracketAnswer| {
+        let lo = row(b, "lower", b.lo, String::new());
+        let hi =
+            b.hi.map(|h| row(b, "upper", h, b.plan.as_ref().map_or(0, |p| p.plan.steps.len()).to_string()));
+        std::iter::once(lo).chain(hi).collect::<Vec<_>>()
+    };
+    Table {
+        caption: "the ends of each bracket".into(),
+        head: head.collect(),
+        rows: a.brackets.iter().flat_map(both).collect(),
+    }
+}

@@ -1,0 +1,125 @@
+//! Takes a way to ask whether parts come apart at a clearance; gives a bracket of the clearance that releases them.
+//!
+//! The upper end is a clearance at which they came apart. Parts with more clearance lie inside those with less, so every
+//! plan stays one at any larger clearance: what the ends say does not depend on what was tried between. The lower end
+//! is only as good as its evidence: that nothing was *found* there is no proof of anything.
+
+/// What was found at one clearance.
+#[derive(Clone, Debug)]
+pub enum At<P> {
+    Apart(P),
+    NotFound(String),
+    /// Some part has nothing left, so there is no larger clearance either.
+    Gone(String),
+}
+
+/// One clearance that was tried.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Tried {
+    pub clearance: f64,
+    pub word: &'static str,
+}
+
+#[derive(Clone, Debug)]
+pub struct Bracket<P> {
+    /// The largest clearance below `hi` at which no plan was found, and what was searched; none: 0, not tried.
+    pub lo: f64,
+    pub why: Option<String>,
+    /// The smallest clearance at which the parts came apart.
+    pub hi: Option<(f64, P)>,
+    /// Why nothing larger was tried, where nothing came apart.
+    pub ended: Option<String>,
+    pub tried: Vec<Tried>,
+}
+
+/// Lengths between which the bracket is looked for.
+#[derive(Clone, Copy, Debug)]
+pub struct Range {
+    /// Tried first, then doubled or halved.
+    pub start: f64,
+    /// Below this nothing is tried: finer than any workshop's clearance.
+    pub least: f64,
+    pub most: f64,
+}
+
+/// `hi` is narrowed until it is at most this times `lo`: a sixteenth, finer than clearances are made.
+pub const NARROW: f64 = 17.0 / 16.0;
+
+pub fn bracket<P>(range: Range, at: impl Fn(f64) -> At<P>) -> Bracket<P> {
+    let mut found = Bracket { lo: 0.0, why: None, hi: None, ended: None, tried: Vec::new() };
+    let mut next = range.start;
+    while next <= range.most && found.hi.is_none() && found.ended.is_none() {
+        found.take(next, at(next));
+        next *= 2.0;
+    }
+    if found.hi.is_none() && found.ended.is_none() {
+        found.ended = Some("larger clearances leave little of the parts".into());
+    }
+    while let Some(next) = found.between(range.least) {
+        found.take(next, at(next));
+    }
+    found
+}
+
+impl<P> Bracket<P> {
+    fn take(&mut self, clearance: f64, at: At<P>) {
+        let word = match at {
+            At::Apart(plan) => {
+                self.hi = Some((clearance, plan));
+                "comes-apart"
+            }
+            At::NotFound(why) => {
+                (self.lo, self.why) = (clearance, Some(why));
+                "not-found"
+            }
+            At::Gone(why) => {
+                self.ended = Some(why);
+                "nothing-left"
+            }
+        };
+        self.tried.push(Tried { clearance, word });
+    }
+
+    /// The clearance to try next, while the ends are far apart.
+    fn between(&self, least: f64) -> Option<f64> {
+        let hi = self.hi.as_ref()?.0;
+        match () {
+            () if self.lo > 0.0 => (hi > self.lo * NARROW).then(|| (self.lo * hi).sqrt()),
+            () => (hi / 2.0 >= least).then_some(hi / 2.0),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const RANGE: Range = Range { start: 0.01, least: 1e-4, most: 0.5 };
+
+    fn opens_at(limit: f64) -> impl Fn(f64) -> At<f64> {
+        move |c| match () {
+            () if c >= 0.3 => At::Gone("thin".into()),
+            () if c >= limit => At::Apart(c),
+            () => At::NotFound("nothing".into()),
+        }
+    }
+
+    #[test]
+    fn a_limit_is_bracketed_wherever_it_is() {
+        for limit in [0.00017, 0.003, 0.01, 0.0100001, 0.07, 0.29] {
+            let b = bracket(RANGE, opens_at(limit));
+            let (hi, plan) = b.hi.expect("an upper end");
+            assert!(hi == plan && b.lo < limit && limit <= hi, "{limit}: {} to {hi}", b.lo);
+            assert!(hi <= b.lo * NARROW, "{limit}: {} to {hi}", b.lo);
+        }
+    }
+
+    #[test]
+    fn what_never_opens_has_no_upper_end_and_what_opens_at_once_no_lower() {
+        let never = bracket(RANGE, opens_at(1.0));
+        assert!(never.hi.is_none() && never.ended.is_some() && never.lo > 0.1);
+        let at_once = bracket(RANGE, opens_at(0.0));
+        assert_eq!(at_once.lo, 0.0);
+        assert!(at_once.hi.is_some_and(|h| h.0 < 2.0 * RANGE.least));
+    }
+}
