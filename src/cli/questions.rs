@@ -40,9 +40,9 @@ pub fn planned(placed: &Placed, of: &[PartIx], clearance_mm: f64) -> PlanAnswer 
     let (asm, patches) = (&joined.assembly, &joined.patches);
     let found = puzzle::plan(placed, of, clearance_mm, || {
         if clearance_mm > 0.0 {
-            with_clearance(asm, patches, clearance_mm / asm.mm_per_unit).map_err(|e| e.to_string()).and_then(
-                |made| sequence::plan_by(&made, of, &[], Motions::Any, |_| None).map_err(|e| e.to_string()),
-            )
+            let made =
+                with_clearance(asm, patches, clearance_mm / asm.mm_per_unit).map_err(|e| e.to_string())?;
+            sequence::plan_by(&made, of, &[], Motions::Any, |_| None).map_err(|e| e.to_string())
         } else {
             sequence::plan_by(asm, of, patches, Motions::Any, |set| locked(joined, set))
                 .map_err(|e| e.to_string())

@@ -97,14 +97,10 @@ fn free(assembly: &Assembly, motion: &Motion) -> Chapter {
 pub fn plan<C>(assembly: &Assembly, plan: &Plan<C>) -> Chapter {
     let searched = [plan.searched.sets, plan.searched.directions, plan.searched.states].map(thousands);
     let touch = format!("overlap up to {} mm", scientific(plan.touch * assembly.mm_per_unit));
+    let looked =
+        format!("{} sets, {} directions, {} poses on the way", searched[0], searched[1], searched[2]);
     let mut facts: Vec<(String, String)> = plan.counted.iter().flat_map(counted).collect();
-    facts.extend([
-        fact(
-            "searched",
-            format!("{} sets, {} directions, {} poses on the way", searched[0], searched[1], searched[2]),
-        ),
-        fact("counts as touching", touch),
-    ]);
+    facts.extend([fact("searched", looked), fact("counts as touching", touch)]);
     let steps = (!plan.steps.is_empty()).then(|| steps::table(assembly, plan));
     let tables = steps.into_iter().chain(steps::reached(plan)).collect();
     let mut chapter = Chapter { facts, tables, ..outcome(plan) };
@@ -156,7 +152,7 @@ fn outcome<C>(plan: &Plan<C>) -> Chapter {
                 "What was looked at on their lattice is told below; turns are not excluded."
             } else if searched {
                 "Looked at were single straight moves, straight moves that stop half way, turns and joint motions, until \
-                  the counted work was used up; how far each part got is told below."
+                 the counted work was used up; how far each part got is told below."
             } else if excluded {
                 "No group of them can leave by one straight move; turns, and moves that stop half way, were not tried."
             } else {

@@ -217,6 +217,8 @@ impl Search<'_> {
     /// All motions: straight ones and wishes that are followed.
     fn turning(&mut self, frame: &[DVec3], patches: &[Patch]) -> Option<Exit> {
         let grain = self.bodies.movable().map(|k| self.bodies.lever[k]).fold(f64::INFINITY, f64::min) / 32.0;
+        // Its own half, however far the last straight state went over the other.
+        self.work.spent = self.work.spent.min(MOST_SPENT / 2);
         let mut open = self.begin();
         self.is_new(&self.bodies.home(), grain);
         while let Some(at) = open.pop_front() {

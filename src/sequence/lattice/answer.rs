@@ -125,13 +125,7 @@ fn stuck<C>(
 ) -> Stuck<C> {
     let parts: Vec<PartIx> = set.iter().map(|&k| asked.parts[k]).collect();
     let straight_moves = if kept == Kept::Exhausted { Straight::None } else { Straight::Unknown };
-    Stuck {
-        parts: ids(asked, set),
-        straight_moves,
-        lock: locked(&parts),
-        gives: None,
-        reached: Vec::new(),
-    }
+    Stuck { parts: ids(asked, set), straight_moves, lock: locked(&parts), reached: vec![], gives: None }
 }
 
 /// Where pieces stand while a plan is told: after a parting all goes on from before it.
