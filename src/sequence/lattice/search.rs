@@ -127,11 +127,11 @@ pub fn search(scene: &Scene, members: &[usize], start: &[Shift], most: usize) ->
     let mut states = States::new(start.len());
     states.add(start, 0);
     let (mut head, mut depth, mut layer, mut complete) = (0, 0, 1, true);
-    while head < states.len() {
-        if states.len() > most {
-            return Search { end: End::GaveUp { moves: depth }, states: states.len() };
+    while head < states.count() {
+        if states.count() > most {
+            return Search { end: End::GaveUp { moves: depth }, states: states.count() };
         }
-        let block = head..states.len().min(head + BLOCK).min(layer.max(head + 1));
+        let block = head..states.count().min(head + BLOCK).min(layer.max(head + 1));
         let found: Vec<Next> =
             block.clone().into_par_iter().map(|k| next(&scene.gaps(members, states.get(k)))).collect();
         for (k, next) in block.clone().zip(found) {
@@ -139,7 +139,7 @@ pub fn search(scene: &Scene, members: &[usize], start: &[Shift], most: usize) ->
                 Next::Leave { parts, way } => {
                     let fewest = if complete { Fewest::Proven } else { Fewest::Unproven };
                     let end = End::Leave { through: path(&states, k), parts, way, fewest };
-                    return Search { end, states: states.len() };
+                    return Search { end, states: states.count() };
                 }
                 Next::Moves { all, cut } => {
                     complete &= !cut;
@@ -153,12 +153,12 @@ pub fn search(scene: &Scene, members: &[usize], start: &[Shift], most: usize) ->
             }
         }
         head = block.end;
-        if head == layer && head < states.len() {
-            (depth, layer) = (depth + 1, states.len());
+        if head == layer && head < states.count() {
+            (depth, layer) = (depth + 1, states.count());
         }
     }
     let end = if complete { End::Nothing } else { End::GaveUp { moves: depth } };
-    Search { end, states: states.len() }
+    Search { end, states: states.count() }
 }
 
 /// The state after a move, about the first part; None where a shift is too far to be written down.

@@ -22,7 +22,7 @@ impl States {
         States { width, shifts: Vec::new(), from: Vec::new(), slots: vec![0; 1 << 10] }
     }
 
-    pub fn len(&self) -> usize {
+    pub fn count(&self) -> usize {
         self.from.len()
     }
 
@@ -55,7 +55,7 @@ impl States {
     fn grow(&mut self) {
         let mask = 2 * self.slots.len() - 1;
         let mut slots = vec![0; mask + 1];
-        for k in 0..self.len() {
+        for k in 0..self.count() {
             let mut at = hash(self.get(k)) as usize & mask;
             while slots[at] != 0 {
                 at = (at + 1) & mask;
@@ -89,7 +89,7 @@ mod tests {
             states.add(&state, 0);
             states.add(&state, 1);
         }
-        assert_eq!(states.len(), 5000);
+        assert_eq!(states.count(), 5000);
         assert_eq!(states.get(4999), [49, 49, 1]);
         assert!((0..5000).all(|k| states.from(k) == 0));
     }
