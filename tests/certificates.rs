@@ -107,8 +107,16 @@ fn accepted(json: Value, forged: bool) -> bool {
 
 /// Numbers beside the proof: a change leaves the claim and its proof as they are. `verify` does not hold them against
 /// anything, so a forger may change them, with the checksum.
-const BESIDE_THE_PROOF: [&str; 6] =
-    ["/residual", "/opening", "/round_off", "/touch", "/searched/sets", "/searched/directions"];
+const BESIDE_THE_PROOF: [&str; 6] = [
+    "/residual",
+    "/opening",
+    "/round_off",
+    "/touch",
+    "/searched/sets",
+    "/searched/directions",
+    "/searched/states",
+    "/searched/programs",
+];
 
 /// Numbers from which the checker builds the parts again: another one is another question, and what it accepts then it
 /// has checked for those parts.

@@ -84,6 +84,7 @@ fn a_simplex_solver_finds_the_same_play() {
 }
 
 #[test]
+#[ignore = "a minute"]
 fn the_plain_window_opens_between_two_clearances_and_the_plan_is_checked() {
     let (a, code) = answer(&["release", PLAIN, "--process", "fdm-pla", "--json"]);
     assert_eq!((a["outcome"].as_str(), code), (Some("opens"), 0));

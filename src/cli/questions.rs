@@ -36,16 +36,20 @@ pub fn argument(what: String, hint: String) -> Fault {
 /// The plan for these parts, made with `clearance_mm` of air on each face of a contact. At no clearance each set that
 /// stays together comes with the proof of its lock, where it is locked.
 pub fn planned(placed: &Placed, of: &[PartIx], clearance_mm: f64) -> PlanAnswer {
+    planned_by(placed, of, clearance_mm, Motions::Any)
+}
+
+/// The same by these motions.
+pub fn planned_by(placed: &Placed, of: &[PartIx], clearance_mm: f64, motions: Motions) -> PlanAnswer {
     let joined = &placed.joined;
     let (asm, patches) = (&joined.assembly, &joined.patches);
     let found = puzzle::plan(placed, of, clearance_mm, || {
         if clearance_mm > 0.0 {
             let made =
                 with_clearance(asm, patches, clearance_mm / asm.mm_per_unit).map_err(|e| e.to_string())?;
-            sequence::plan_by(&made, of, &[], Motions::Any, |_| None).map_err(|e| e.to_string())
+            sequence::plan_by(&made, of, &[], motions, |_| None).map_err(|e| e.to_string())
         } else {
-            sequence::plan_by(asm, of, patches, Motions::Any, |set| locked(joined, set))
-                .map_err(|e| e.to_string())
+            sequence::plan_by(asm, of, patches, motions, |set| locked(joined, set)).map_err(|e| e.to_string())
         }
     });
     let (plan, why) = found.map_or_else(|why| (nothing(), Some(why)), |plan| (plan, None));

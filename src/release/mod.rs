@@ -27,8 +27,8 @@ pub struct Bracket<P> {
     pub why: Option<String>,
     /// The smallest clearance at which the parts came apart.
     pub hi: Option<(f64, P)>,
-    /// Why nothing larger was tried, where nothing came apart.
-    pub ended: Option<String>,
+    /// The smallest clearance tried that leaves nothing of some part, and of which.
+    pub gone: Option<(f64, String)>,
     pub tried: Vec<Tried>,
 }
 
@@ -46,14 +46,11 @@ pub struct Range {
 pub const NARROW: f64 = 17.0 / 16.0;
 
 pub fn bracket<P>(range: Range, at: impl Fn(f64) -> At<P>) -> Bracket<P> {
-    let mut found = Bracket { lo: 0.0, why: None, hi: None, ended: None, tried: Vec::new() };
+    let mut found = Bracket { lo: 0.0, why: None, hi: None, gone: None, tried: Vec::new() };
     let mut next = range.start;
-    while next <= range.most && found.hi.is_none() && found.ended.is_none() {
+    while next <= range.most && found.hi.is_none() && found.gone.is_none() {
         found.take(next, at(next));
         next *= 2.0;
-    }
-    if found.hi.is_none() && found.ended.is_none() {
-        found.ended = Some("larger clearances leave little of the parts".into());
     }
     while let Some(next) = found.between(range.least) {
         found.take(next, at(next));
@@ -73,7 +70,7 @@ impl<P> Bracket<P> {
                 "not-found"
             }
             At::Gone(why) => {
-                self.ended = Some(why);
+                self.gone = Some((clearance, why));
                 "nothing-left"
             }
         };
@@ -82,7 +79,8 @@ impl<P> Bracket<P> {
 
     /// The clearance to try next, while the ends are far apart.
     fn between(&self, least: f64) -> Option<f64> {
-        let hi = self.hi.as_ref()?.0;
+        // Where nothing came apart yet the upper end may lie below what leaves nothing.
+        let hi = self.hi.as_ref().map(|h| h.0).or(self.gone.as_ref().map(|g| g.0))?;
         match () {
             () if self.lo > 0.0 => (hi > self.lo * NARROW).then(|| (self.lo * hi).sqrt()),
             () => (hi / 2.0 >= least).then_some(hi / 2.0),
@@ -117,7 +115,7 @@ mod tests {
     #[test]
     fn what_never_opens_has_no_upper_end_and_what_opens_at_once_no_lower() {
         let never = bracket(RANGE, opens_at(1.0));
-        assert!(never.hi.is_none() && never.ended.is_some() && never.lo > 0.1);
+        assert!(never.hi.is_none() && never.gone.is_some() && never.lo > 0.28);
         let at_once = bracket(RANGE, opens_at(0.0));
         assert_eq!(at_once.lo, 0.0);
         assert!(at_once.hi.is_some_and(|h| h.0 < 2.0 * RANGE.least));

@@ -129,11 +129,11 @@ pub fn bracket(
         motions: motions.into(),
         lo: length(joined, found.lo),
         evidence,
-        why: found
-            .ended
-            .as_ref()
-            .filter(|_| found.hi.is_none())
-            .map_or(why.clone(), |e| format!("{why}; {e}")),
+        why: match (&found.hi, &found.gone) {
+            (Some(_), _) => why,
+            (None, Some((_, gone))) => format!("{why}; with more clearance: {gone}"),
+            (None, None) => format!("{why}; larger clearances leave little of the parts and were not tried"),
+        },
         hi: found.hi.as_ref().map(|h| length(joined, h.0)),
         plan: found.hi.as_ref().map(|h| h.1.clone()),
         tried: found.tried.iter().map(|t| (t.clearance * mm, t.word.to_string())).collect(),
@@ -143,7 +143,7 @@ pub fn bracket(
 /// The bracket of an assembly that comes apart as it is.
 pub fn needs_none(joined: &Joined, plan: PlanAnswer) -> BracketAnswer {
     BracketAnswer {
-        motions: "straight moves of parts and groups".into(),
+        motions: "straight moves, stops half way, turns, several at once".into(),
         lo: length(joined, 0.0),
         evidence: Evidence::None,
         why: "it comes apart without clearance".into(),
