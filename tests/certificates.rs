@@ -107,7 +107,7 @@ fn accepted(json: Value, forged: bool) -> bool {
 
 /// Numbers beside the proof: a change leaves the claim and its proof as they are. `verify` does not hold them against
 /// anything, so a forger may change them, with the checksum.
-const BESIDE_THE_PROOF: [&str; 6] = [
+const BESIDE_THE_PROOF: [&str; 8] = [
     "/residual",
     "/opening",
     "/round_off",

@@ -4,7 +4,7 @@
 //! Two locked sets that share a part are locked together, so the largest are apart; and parts of a locked set have one
 //! common motion in every motion of what they are part of. Sound: a core is locked by its rows as written, and
 //! [`Firm::Holds`] only where that is shown to survive what the files' digits leave open. Complete but for cores that
-//! hang on less than [`split::SAME_MOTION`], and those said to be undecided or not asked.
+//! hang on less than `split::SAME_MOTION`, and those said to be undecided or not asked.
 
 mod contacts;
 mod least;

@@ -43,7 +43,7 @@ fn count_type(ply: &Ply) -> &'static str {
     if ply.faces.iter().all(|(c, _)| c.len() <= usize::from(u8::MAX)) { "uchar" } else { "uint" }
 }
 
-/// Reads a file of [`write`].
+/// Reads a file of [`write()`].
 pub fn read(bytes: &[u8]) -> io::Result<Ply> {
     let wrong = |what: &str| io::Error::new(io::ErrorKind::InvalidData, what.to_string());
     let end = b"end_header\n";

@@ -1,7 +1,7 @@
 //! Takes an assembly; gives its parts as bricks on one lattice, or says why they do not lie on one.
 //!
 //! Sound within the touching depth: every corner of every convex cell stands within it of a point of the lattice given.
-//! Not promised: the coarsest lattice there is; [`MOST_DIVISIONS`] bounds what is tried.
+//! Not promised: the coarsest lattice there is; `MOST_DIVISIONS` bounds what is tried.
 
 use super::moves::MOST_PARTS;
 use super::pairs::{Brick, WIDEST, around, overlap};
