@@ -335,7 +335,6 @@ fn the_same_part_gives_the_same_bytes() {
 fn openscad_makes_the_same_molds_from_the_sources() {
     for (name, part, route) in [
         ("scad-wavy", wavy(), Route::Rigid),
-        ("scad-bobbin", bobbin(), Route::Rigid),
         ("scad-holed", holed(), Route::Silicone),
         ("scad-tree", angle(), Route::LostWax),
     ] {

@@ -17,11 +17,18 @@ use rayon::prelude::*;
 /// Ways out that are tried for each part, spread evenly over the sphere (spiral of the golden angle).
 const WAYS: usize = 200;
 
+/// Pairs of cells that are looked at over all ways, about two seconds: large sets are tried along fewer ways, and not at
+/// all where there are too many for the contacts' own.
+const MOST_LOOKS: usize = 100_000_000;
+
 /// Directions across a way in which a part may give, evenly around.
 const ACROSS: usize = 32;
 
 /// Parts of a set, beyond which nothing is estimated: each is tried against each other on every way.
 const MOST_PARTS: usize = 24;
+
+/// Parts, those of the least strain first, without which the rest is planned: each plan takes as long as that of the set.
+const MOST_RESTS: usize = 3;
 
 /// What a part would have to do.
 #[derive(Clone, Debug)]
@@ -37,7 +44,7 @@ pub struct Giving {
     pub rest: Outcome,
 }
 
-/// The part with the least strain of those without which the set comes apart; else the one with the least strain.
+/// Of the few parts of the least strain the first without which the set comes apart; else the one of the least strain.
 pub fn give(field: &Field, set: &Set) -> Option<Giving> {
     if set.len() > MOST_PARTS {
         return None;
@@ -50,7 +57,7 @@ pub fn give(field: &Field, set: &Set) -> Option<Giving> {
     };
     let mut all: Vec<Giving> = free.par_iter().filter_map(best).collect();
     all.sort_by(|a, b| a.strain.total_cmp(&b.strain).then(a.part.cmp(&b.part)));
-    for g in &mut all {
+    for g in all.iter_mut().take(MOST_RESTS) {
         let rest: Vec<PartIx> = set.iter().copied().filter(|q| *q != g.part).collect();
         g.rest =
             plan_of(field.asm, &rest, field.patches, |_| None::<()>).map_or(Outcome::NotFound, |p| p.outcome);
@@ -69,8 +76,25 @@ fn ways(field: &Field, set: &Set) -> Vec<DVec3> {
         let (sin, cos) = (golden * k as f64).sin_cos();
         DVec3::new(cos * (1.0 - z * z).sqrt(), sin * (1.0 - z * z).sqrt(), z)
     });
-    let frame = super::journey::frame(field.patches, set);
-    frame.into_iter().chain(DVec3::AXES).chain(DVec3::AXES.map(|d| -d)).chain(spiral).collect()
+    let first: Vec<DVec3> = super::journey::frame(field.patches, set)
+        .into_iter()
+        .chain(DVec3::AXES)
+        .chain(DVec3::AXES.map(|d| -d))
+        .collect();
+    let most = MOST_LOOKS / looks(field, set).max(1);
+    if most < first.len() {
+        return Vec::new();
+    }
+    // Every so many of the spiral, so that few are spread as evenly as all.
+    let every = WAYS.div_ceil((most - first.len()).max(1));
+    first.into_iter().chain(spiral.step_by(every)).take(most).collect()
+}
+
+/// Pairs of cells of different parts of the set.
+fn looks(field: &Field, set: &Set) -> usize {
+    let cells: Vec<usize> = set.iter().map(|&p| field.asm.solid(p).cells.len()).collect();
+    let all: usize = cells.iter().sum();
+    cells.iter().map(|c| c * (all - c)).sum()
 }
 
 fn giving(field: &Field, view: &View, p: PartIx, set: &Set) -> Option<Giving> {

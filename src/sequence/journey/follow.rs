@@ -101,11 +101,12 @@ impl Follow<'_> {
         room: impl Fn(f64) -> f64,
         work: &mut Work,
     ) -> Option<Vec<Twist>> {
+        // Counted even where the program is too large to be solved: finding its rows took as long.
+        work.spent += (rows.len() + 12 * at.len()) * 6 * at.len();
         if rows.len() > MOST_ROWS {
             return None;
         }
         work.programs += 1;
-        work.spent += (rows.len() + 12 * at.len()) * 6 * at.len();
         nearest(self.bodies, at, rows, wish, step, room)
     }
 

@@ -179,6 +179,9 @@ impl Search<'_> {
         let all = self.all();
         let mut out = Vec::new();
         for group in self.groups(&patches) {
+            if self.work.spent >= MOST_SPENT / 2 {
+                break;
+            }
             let moving: Set = group.iter().map(|&k| self.bodies.parts[k]).collect();
             let rest: Set = all.difference(&moving).copied().collect();
             self.work.spent += self.pairs(&group);
