@@ -244,8 +244,8 @@ fn chapter(told: &Result<Told, String>) -> Answer<Chapter> {
 /// What is not built; said wherever a whole run is told.
 const LIMITS: [&str; 4] = [
     "A run makes the parts, and where something is cast the package with its molds; `weavelock fab` makes a package with plates, sheets and coupon of prints too.",
-    "Plans are straight moves of parts and groups; turns and moves in several stretches are not searched.",
-    "Locked is first order at zero clearance; the least clearance that opens a lock is not searched for yet.",
+    "Turns, joint motions and moves that stop half way are searched with counted work: what is not found is not excluded.",
+    "Locked is first order at zero clearance; `weavelock release` looks for the clearance that opens a lock.",
     "The tiles are those of the sampled sites; the check says whether its verdict holds for the curved bisectors too.",
 ];
 
