@@ -355,7 +355,7 @@ fn summary(
             page.display(),
             out.join("check.json").display()
         ),
-        format!("Not built yet: {}", LIMITS.join(" ")),
+        format!("Limits: {}", LIMITS.join(" ")),
     ];
     let json = serde_json::to_string(&answer).unwrap_or_default();
     Told {
