@@ -1,5 +1,6 @@
 //! Promises of the atlas: known rows, the same files with any threads, stops and shards, and what is refused.
 
+use crate::support;
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -7,12 +8,8 @@ use std::process::{Command, Stdio};
 use weavelock::atlas::{self, Abc, Ask, Phases, Settings, Shard, Status, Which};
 use weavelock::weave::{Draft, Hanging, Weave, hangs_together};
 
-/// An empty folder of a test's own.
 fn room(name: &str) -> PathBuf {
-    let room = Path::new(env!("CARGO_TARGET_TMPDIR")).join("atlas").join(name);
-    let _ = fs::remove_dir_all(&room);
-    fs::create_dir_all(&room).expect("a folder");
-    room
+    support::room("atlas", name)
 }
 
 fn small() -> Ask {

@@ -1,27 +1,20 @@
 //! The program as a user meets it: verbs, keys of the answers, exit codes, what goes to stdout and what to stderr.
 
+use crate::support;
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
-fn root() -> &'static Path {
-    Path::new(env!("CARGO_MANIFEST_DIR"))
-}
-
 fn fixture(name: &str) -> String {
-    root().join("fixtures").join(name).display().to_string()
+    support::root().join("fixtures").join(name).display().to_string()
 }
 
 fn woven(name: &str) -> String {
     fixture(&format!("assemblies/woven/{name}.toml"))
 }
 
-/// An empty folder of a test's own.
 fn room(name: &str) -> PathBuf {
-    let room = Path::new(env!("CARGO_TARGET_TMPDIR")).join("cli").join(name);
-    let _ = std::fs::remove_dir_all(&room);
-    std::fs::create_dir_all(&room).expect("a folder");
-    room
+    support::room("cli", name)
 }
 
 fn program(args: &[&str], at: &Path) -> Command {
@@ -205,15 +198,17 @@ fn a_folder_that_cannot_be_made_is_an_error_and_leaves_nothing() {
 #[test]
 fn a_full_disk_is_an_error() {
     let full = std::fs::File::options().write(true).open("/dev/full").expect("a full device");
-    let out =
-        program(&["check", &woven("plain-window"), "--json"], root()).stdout(full).output().expect("starts");
+    let out = program(&["check", &woven("plain-window"), "--json"], support::root())
+        .stdout(full)
+        .output()
+        .expect("starts");
     assert_eq!(code(&out), 2, "{}", text(&out.stderr));
 }
 
 #[test]
 fn words_for_people_carry_no_colour_into_a_pipe() {
     for no_color in [false, true] {
-        let mut command = program(&["check", &woven("plain-window")], root());
+        let mut command = program(&["check", &woven("plain-window")], support::root());
         if no_color {
             command.env("NO_COLOR", "1");
         }

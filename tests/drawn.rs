@@ -1,5 +1,6 @@
 //! Pictures and files for other programs, as a user asks for them; what is written is read back.
 
+use crate::support;
 use crate::support::{joined, ran, window};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
@@ -13,9 +14,7 @@ const LOOSE: &str = "name = \"loose\"\n[weave]\nabc = [1, 1, 1]\n[profile]\nsamp
                      cut = \"tiles\"\nrepeat = 1\n[size]\npitch = \"20 mm\"\n";
 
 fn room(name: &str) -> PathBuf {
-    let at = Path::new(env!("CARGO_TARGET_TMPDIR")).join("drawn").join(name);
-    let _ = std::fs::remove_dir_all(&at);
-    std::fs::create_dir_all(&at).expect("a folder");
+    let at = support::room("drawn", name);
     std::fs::write(at.join("loose.toml"), LOOSE).expect("a spec");
     at
 }

@@ -2,6 +2,7 @@
 //! check says of its margin and of the surfaces behind the samples.
 
 use crate::random::parts;
+use crate::support;
 use crate::support::{Dice, joined, source, tiles, window};
 use glam::DVec3;
 use std::path::{Path, PathBuf};
@@ -12,10 +13,6 @@ use weavelock::report::answer::{self, Certificate, CheckAnswer, ForceAnswer, Wor
 use weavelock::sampling::{Beyond, refined};
 use weavelock::spec::{Spec, Syntax, parse};
 use weavelock::verify::certificate::{About, Arithmetic, Shown, certificate, proof};
-
-fn root() -> &'static Path {
-    Path::new(env!("CARGO_MANIFEST_DIR"))
-}
 
 fn spec(file: &Path, text: &str) -> Spec {
     parse(text, file, Syntax::Toml).unwrap_or_else(|f| panic!("{f}"))
@@ -49,7 +46,9 @@ fn exactly(joined: &Joined, a: &CheckAnswer) {
 }
 
 fn specs(folder: &str) -> Vec<PathBuf> {
-    let all = std::fs::read_dir(root().join(folder)).expect("a folder").map(|e| e.expect("an entry").path());
+    let all = std::fs::read_dir(support::root().join(folder))
+        .expect("a folder")
+        .map(|e| e.expect("an entry").path());
     let mut all: Vec<PathBuf> = all.filter(|p| p.extension().is_some_and(|e| e == "toml")).collect();
     all.sort();
     assert!(all.len() > 10, "only {} in {folder}", all.len());
@@ -81,7 +80,7 @@ const CASES: [(&str, &[&str], Word); 7] = [
 #[test]
 fn every_case_of_others_is_verified() {
     for (name, held, verdict) in CASES {
-        let folder = root().join("../shared/cases/topolite").join(name);
+        let folder = support::root().join("../shared/cases/topolite").join(name);
         let Ok(files) = std::fs::read_dir(&folder) else {
             println!("skipped: no {} beside this repository", folder.display());
             continue;
@@ -214,7 +213,7 @@ fn no_turn_within_the_margin_frees() {
     let names =
         ["block-in-case", "dovetail-stopped", "swirl-two-held", "taper-against-draft", "woven/plain-window"];
     for name in names {
-        let file = root().join("fixtures/assemblies").join(format!("{name}.toml"));
+        let file = support::root().join("fixtures/assemblies").join(format!("{name}.toml"));
         let text = std::fs::read_to_string(&file).expect("a fixture");
         let joined = join(&spec(&file, &text)).unwrap_or_else(|f| panic!("{f}"));
         let a = answered(&joined, &file, &text);
@@ -276,7 +275,7 @@ fn the_plain_window_stands_under_refinement() {
 
 #[test]
 fn meshes_have_nothing_to_refine() {
-    let file = root().join("fixtures/assemblies/block-in-case.toml");
+    let file = support::root().join("fixtures/assemblies/block-in-case.toml");
     let text = std::fs::read_to_string(&file).expect("a fixture");
     let found = refined(&spec(&file, &text)).unwrap_or_else(|f| panic!("{f}"));
     assert_eq!((found.levels.len(), found.stands), (0, Beyond::Holds));

@@ -1,5 +1,6 @@
 //! Every example that help and README give runs, in a folder that holds the files they name.
 
+use crate::support;
 use clap::CommandFactory;
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -14,19 +15,16 @@ const FILES: [(&str, &str); 4] = [
     ("roof.toml", "fixtures/assemblies/dovetail-open.toml"),
 ];
 
-fn root() -> &'static Path {
-    Path::new(env!("CARGO_MANIFEST_DIR"))
-}
-
 /// A folder with the files of the examples; meshes are named from their own folder.
 fn room(name: &str) -> PathBuf {
-    let at = Path::new(env!("CARGO_TARGET_TMPDIR")).join("examples").join(name);
-    let _ = std::fs::remove_dir_all(&at);
-    std::fs::create_dir_all(at.join("parts")).expect("a folder");
+    let at = support::room("examples", name);
+    std::fs::create_dir(at.join("parts")).expect("a folder");
     for (to, from) in FILES {
-        std::fs::copy(root().join(from), at.join(to)).expect("a fixture");
+        std::fs::copy(support::root().join(from), at.join(to)).expect("a fixture");
     }
-    for mesh in std::fs::read_dir(root().join("fixtures/assemblies/parts")).expect("a folder").flatten() {
+    for mesh in
+        std::fs::read_dir(support::root().join("fixtures/assemblies/parts")).expect("a folder").flatten()
+    {
         std::fs::copy(mesh.path(), at.join("parts").join(mesh.file_name())).expect("a mesh");
     }
     at
@@ -89,7 +87,7 @@ fn every_verb_has_an_example_that_runs() {
 #[ignore = "half a minute"]
 fn every_command_of_the_readme_runs() {
     let at = room("readme");
-    let text = std::fs::read_to_string(root().join("README.md")).expect("a README");
+    let text = std::fs::read_to_string(support::root().join("README.md")).expect("a README");
     let own = text.lines().filter_map(|l| l.strip_prefix("    cargo run --release"));
     let own: Vec<&str> = own.filter(|l| !l.contains("-p weavelock-fab")).collect();
     assert!(own.len() >= 4, "{own:?}");

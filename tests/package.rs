@@ -1,5 +1,6 @@
 //! A fabricator's package as it lies on the disk: whole or not there, never over something unasked, readable by others.
 
+use crate::support;
 use glam::DVec3;
 use serde_json::Value;
 use std::collections::BTreeMap;
@@ -11,10 +12,7 @@ use weavelock_fab::mesh::Closure;
 use weavelock_fab::threemf;
 
 fn room(name: &str) -> PathBuf {
-    let room = Path::new(env!("CARGO_TARGET_TMPDIR")).join("package").join(name);
-    let _ = fs::remove_dir_all(&room);
-    fs::create_dir_all(&room).expect("a folder");
-    room
+    support::room("package", name)
 }
 
 fn plain() -> String {

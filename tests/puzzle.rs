@@ -3,6 +3,7 @@
 //! Six-piece burrs by their numbers (one more than the sum of the bits of the cubes taken away; Cutler, *A Computer
 //! Analysis of All 6-Piece Burrs*; von Kanel, IBM Research, *Burr puzzles*), with published levels.
 
+use crate::support;
 use flate2::Compression;
 use flate2::write::GzEncoder;
 use serde_json::Value;
@@ -77,12 +78,8 @@ fn puzzle(text: &str) -> Puzzle {
     *meshes.puzzle.expect("a puzzle")
 }
 
-/// An empty folder of a test's own.
 fn room(name: &str) -> PathBuf {
-    let room = Path::new(env!("CARGO_TARGET_TMPDIR")).join("puzzle").join(name);
-    let _ = std::fs::remove_dir_all(&room);
-    std::fs::create_dir_all(&room).expect("a folder");
-    room
+    support::room("puzzle", name)
 }
 
 /// Exit code, stdout and stderr.

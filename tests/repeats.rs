@@ -1,6 +1,7 @@
 //! Repetitions at the library and the command line: rows with proofs, verified and forged; classes of every size;
 //! windows at every place of the draft, which docs/repeats.md builds on; what a weaver is told.
 
+use crate::support;
 use crate::support::{joined, ran, verified, words, woven};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
@@ -34,10 +35,7 @@ fn sealed_again(mut answer: Value) -> Value {
 }
 
 fn room(name: &str) -> PathBuf {
-    let at = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("repeats-{name}"));
-    let _ = std::fs::remove_dir_all(&at);
-    std::fs::create_dir_all(&at).expect("a folder");
-    at
+    support::room("repeats", name)
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! What several test files need: woven assemblies from the text of their file, seeded numbers, ways to take a verdict.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use weavelock::assembly::{Assembly, PartIx};
 use weavelock::contact::{Joined, Origin, Patch, join};
 use weavelock::locking::{Check, Verdict, check, check_some};
@@ -86,6 +86,18 @@ impl Dice {
         (1..n).rev().for_each(|k| order.swap(k, self.below(k + 1)));
         order
     }
+}
+
+pub fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+}
+
+/// An empty folder of a test's own; `of` is the file that the test stands in.
+pub fn room(of: &str, name: &str) -> PathBuf {
+    let room = Path::new(env!("CARGO_TARGET_TMPDIR")).join(of).join(name);
+    let _ = std::fs::remove_dir_all(&room);
+    std::fs::create_dir_all(&room).expect("a folder");
+    room
 }
 
 pub fn source(file: &str, text: &str) -> Source {

@@ -8,6 +8,7 @@ use super::questions::{locked, planned, planned_by};
 use super::told::{News, Told, Trouble};
 use super::words::fact;
 use crate::assembly::PartIx;
+use crate::blocking::bounds;
 use crate::release::{At, Range, bracket};
 use crate::report::answer::{
     self, BracketAnswer, Length, PlanAnswer, ProcessRelease, ReleaseAnswer, ReleaseWord, Sealed,
@@ -18,7 +19,6 @@ use crate::sequence::{Motions, Outcome};
 use crate::solid::Solid;
 use crate::verify;
 use clap::Args;
-use glam::DVec3;
 use std::path::PathBuf;
 use weavelock_fab::process::Process;
 
@@ -103,8 +103,7 @@ fn searched(placed: &Placed, all: &[PartIx], motions: Motions) -> crate::release
 }
 
 fn diagonal(solid: &Solid) -> f64 {
-    let lo = solid.vertices.iter().fold(DVec3::INFINITY, |m, v| m.min(*v));
-    let hi = solid.vertices.iter().fold(DVec3::NEG_INFINITY, |m, v| m.max(*v));
+    let (lo, hi) = bounds(solid.vertices.iter().copied());
     (hi - lo).length()
 }
 

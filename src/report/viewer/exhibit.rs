@@ -7,6 +7,7 @@ use super::colours::{Rgb, Scheme, schemes};
 use super::pack::{self, Shape};
 use super::signs::{self, Signs};
 use crate::assembly::{Assembly, PartIx};
+use crate::blocking::bounds;
 use crate::blocking::graph::{infinitesimal, pairs};
 use crate::contact::Joined;
 use crate::report::draw::mesh::CreaseAngle;
@@ -133,21 +134,17 @@ struct Thing {
     pose: DAffine3,
 }
 
-fn box_of(points: impl Iterator<Item = DVec3>) -> (DVec3, DVec3) {
-    points.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(lo, hi), p| (lo.min(p), hi.max(p)))
-}
-
 fn points<'a>(meshes: &'a [Mesh], things: &'a [Thing]) -> impl Iterator<Item = DVec3> + 'a {
     things.iter().flat_map(|t| meshes[t.mesh].vertices.iter().map(|v| t.pose.transform_point3(*v)))
 }
 
 fn longest_side(meshes: &[Mesh], things: &[Thing]) -> f64 {
-    let (lo, hi) = box_of(points(meshes, things));
+    let (lo, hi) = bounds(points(meshes, things));
     Some((hi - lo).max_element()).filter(|s| s.is_finite() && *s > 0.0).unwrap_or(1.0)
 }
 
 fn placed(name: String, mm_per_unit: f64, meshes: &[Mesh], things: &[Thing]) -> Exhibit {
-    let (lo, hi) = box_of(points(meshes, things));
+    let (lo, hi) = bounds(points(meshes, things));
     let middle = if lo.is_finite() { (lo + hi) / 2.0 } else { DVec3::ZERO };
     let shapes: Vec<Shape> = meshes.iter().map(pack::shape).collect();
     let poses = things.iter().flat_map(|t| pack::pose(&t.pose, shapes[t.mesh].centre, middle));

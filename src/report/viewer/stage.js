@@ -11,12 +11,14 @@ void main() {
   world = turn * p + shift; normal = turn * n; colour = tint;
   gl_Position = see * vec4(world, 1.0);
 }`;
-const SHADE = `
+// What both fragments begin with: the section takes away what lies before it.
+const CUT = `
 in vec3 world; in vec3 normal; flat in vec4 colour;
 uniform vec4 cut; uniform vec3 eye; uniform vec3 key; uniform int mode;
 out vec4 seen;
 void main() {
-  if (dot(cut.xyz, world) > cut.w) discard;
+  if (dot(cut.xyz, world) > cut.w) discard;`;
+const SHADE = `${CUT}
   if (mode == 1) { seen = colour; return; }
   vec3 base = pow(colour.rgb, vec3(2.2));
   vec3 n = normalize(normal), v = normalize(eye - world);
@@ -32,12 +34,7 @@ void main() {
   float alpha = colour.a < 1.0 ? mix(colour.a, min(1.0, colour.a + 0.5), rim * rim) : 1.0;
   seen = vec4(pow(min(base * light, vec3(1.0)), vec3(1.0 / 2.2)), alpha);
 }`;
-const LINE = `
-in vec3 world; in vec3 normal; flat in vec4 colour;
-uniform vec4 cut; uniform vec3 eye; uniform vec3 key; uniform int mode;
-out vec4 seen;
-void main() {
-  if (dot(cut.xyz, world) > cut.w) discard;
+const LINE = `${CUT}
   seen = vec4(0.1, 0.1, 0.125, 0.75 * min(1.0, colour.a * 1.5));
 }`;
 

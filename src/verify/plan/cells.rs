@@ -6,7 +6,7 @@
 use super::near;
 use super::way::{Way, by_program};
 use crate::assembly::Assembly;
-use crate::solid::{Cell, Solid};
+use crate::solid::Cell;
 use glam::DVec3;
 
 /// Whether the cells may stand for the solid: faces, corners and planes agree, none is so thin that overlaps could hide
@@ -30,7 +30,7 @@ pub(super) fn cells_fill(asm: &Assembly, solid: usize, tolerance: f64) -> Result
         }
         volume += volume_of(cell);
     }
-    let (whole, surface) = (solid.volume(), surface(solid));
+    let (whole, surface) = (solid.volume(), solid.surface());
     if (volume - whole).abs() <= VOLUME_SHARE * whole.abs() + solid.off * surface {
         Ok(())
     } else {
@@ -53,11 +53,6 @@ fn agrees(cell: &Cell, tolerance: f64) -> Result<(), &'static str> {
         }
     }
     Ok(())
-}
-
-fn surface(solid: &Solid) -> f64 {
-    let at = |i: u32| solid.vertices[i as usize];
-    solid.triangles().map(|[a, b, c]| (at(b) - at(a)).cross(at(c) - at(a)).length() / 2.0).sum()
 }
 
 /// By the divergence theorem over the facets, as fans.
