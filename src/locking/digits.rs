@@ -8,9 +8,11 @@ use super::many;
 use super::margin::{self, Effort, Weighted};
 use super::rows::{Freedom, Row, Unknowns, rows};
 use super::{Gap, Motion, ROUND_OFF, Stress, Verdict, decide};
+use crate::assembly::PartIx;
 use crate::contact::{Patch, Slack};
 use glam::DVec3;
 use std::collections::BTreeMap;
+use std::f64::consts::FRAC_PI_2;
 
 /// What becomes of a lock within the slack of its rows.
 #[derive(Clone, Debug)]
@@ -31,11 +33,29 @@ const MOST_UNKNOWNS: usize = 120;
 
 /// The lock, or undecided where rows within the slack let a motion pass.
 pub fn guarded(rows: &[Row], unknowns: &Unknowns, slack: &[Slack], verdict: Verdict) -> Verdict {
-    let Verdict::Locked(stress) = &verdict else { return verdict };
-    match within(rows, unknowns, slack, stress) {
-        Within::Open(_) => Verdict::Undecided(open(slack)),
-        Within::Survives | Within::Unproven => verdict,
+    let Verdict::Locked(stress) = verdict else { return verdict };
+    let (rows, slack) = telling(rows, slack);
+    // A lock by rows that tell something is the better proof.
+    let stress = match leaning(&rows, unknowns, &slack, &stress) {
+        Some(Verdict::Locked(firmer)) => firmer,
+        Some(Verdict::Free(_)) => return Verdict::Undecided(open(&slack)),
+        Some(Verdict::Undecided(_)) | None => stress,
+    };
+    match within(&rows, unknowns, &slack, &stress) {
+        Within::Open(_) => Verdict::Undecided(open(&slack)),
+        Within::Survives | Within::Unproven => Verdict::Locked(stress),
     }
+}
+
+/// Rows whose normals are known to better than a right angle. Any other gives way to every motion: some normal within a right
+/// angle of its own lets it pass.
+fn telling(rows: &[Row], slack: &[Slack]) -> (Vec<Row>, Vec<Slack>) {
+    rows.iter().zip(slack).filter(|(_, s)| s.angle < FRAC_PI_2).map(|(r, s)| (*r, *s)).unzip()
+}
+
+/// Where a lock leans on rows other than these: what these say by themselves.
+fn leaning(rows: &[Row], unknowns: &Unknowns, slack: &[Slack], stress: &Stress) -> Option<Verdict> {
+    slack_of_forces(rows, slack, stress).is_none().then(|| decide(rows, unknowns))
 }
 
 /// Why such a lock is undecided.
@@ -44,21 +64,39 @@ pub fn open(slack: &[Slack]) -> Gap {
         why: "locked as written, but the files' digits leave open a motion: contact normals and points within them let \
               it pass (normals are known to so many radians)"
             .into(),
-        size: slack.iter().map(|s| s.angle).fold(0.0, f64::max),
+        size: slack.iter().map(|s| s.angle).filter(|a| *a < FRAC_PI_2).fold(0.0, f64::max),
     }
 }
 
-/// Rows of patches with the slack of each (exact where it has none); where several patches stand behind one row the largest.
+/// Rows of patches with the slack of each (exact where it has none). Where several patches stand behind one row the least:
+/// each of them is a contact of its own.
 pub fn rows_with_slack(patches: &[Patch], slack: &[Slack], freedom: Freedom) -> (Vec<Row>, Vec<Slack>) {
-    let bits = |v: DVec3| v.to_array().map(f64::to_bits);
-    let mut by: BTreeMap<_, Slack> = BTreeMap::new();
-    for (p, s) in patches.iter().zip(slack) {
-        let entry = by.entry((p.a, p.b, bits(p.normal))).or_default();
-        *entry = Slack { angle: entry.angle.max(s.angle), distance: entry.distance.max(s.distance) };
-    }
+    let own = |k: usize| slack.get(k).copied().unwrap_or_default();
     let rows = rows(patches, freedom);
-    let own = rows.iter().map(|r| by.get(&(r.a, r.b, bits(r.normal))).copied().unwrap_or_default()).collect();
-    (rows, own)
+    let mut least = BTreeMap::new();
+    for (k, patch) in patches.iter().enumerate() {
+        for &point in &patch.corners {
+            let row = Row { a: patch.a, b: patch.b, normal: patch.normal, point };
+            least.entry(place(&row, freedom)).and_modify(|s| *s = firmer(*s, own(k))).or_insert(own(k));
+        }
+    }
+    let of = rows.iter().map(|r| least.get(&place(r, freedom)).copied().unwrap_or_default()).collect();
+    (rows, of)
+}
+
+/// What tells rows apart; where nothing turns, points do not count.
+fn place(row: &Row, freedom: Freedom) -> (PartIx, PartIx, [u64; 3], [u64; 3]) {
+    let bits = |v: DVec3| v.to_array().map(f64::to_bits);
+    let point = match freedom {
+        Freedom::Translation => DVec3::ZERO,
+        Freedom::Rigid => row.point,
+    };
+    (row.a, row.b, bits(row.normal), bits(point))
+}
+
+/// The one whose normal is known better.
+fn firmer(a: Slack, b: Slack) -> Slack {
+    if (b.angle, b.distance) < (a.angle, a.distance) { b } else { a }
 }
 
 /// What becomes of the lock within the slack.
@@ -66,6 +104,17 @@ pub fn within(rows: &[Row], unknowns: &Unknowns, slack: &[Slack], stress: &Stres
     if unknowns.count == 0 || slack.iter().all(|s| *s == Slack::default()) {
         return Within::Survives;
     }
+    let (rows, slack) = telling(rows, slack);
+    match leaning(&rows, unknowns, &slack, stress) {
+        None => shown(&rows, unknowns, &slack, stress),
+        Some(Verdict::Locked(stress)) => shown(&rows, unknowns, &slack, &stress),
+        Some(Verdict::Free(motion)) => Within::Open(motion),
+        Some(Verdict::Undecided(_)) => Within::Unproven,
+    }
+}
+
+/// The same for rows that all tell something.
+fn shown(rows: &[Row], unknowns: &Unknowns, slack: &[Slack], stress: &Stress) -> Within {
     if slack_of_forces(rows, slack, stress).is_some_and(|own| many::survives(stress, &own, unknowns) > 1.0) {
         return Within::Survives;
     }
@@ -88,8 +137,7 @@ pub fn within(rows: &[Row], unknowns: &Unknowns, slack: &[Slack], stress: &Stres
 
 /// The slack of the rows that carry a force; none where one is not among the rows.
 fn slack_of_forces(rows: &[Row], slack: &[Slack], stress: &Stress) -> Option<Vec<Slack>> {
-    let bits = |v: DVec3| v.to_array().map(f64::to_bits);
-    let key = |r: &Row| (r.a, r.b, bits(r.normal), bits(r.point));
+    let key = |r: &Row| place(r, Freedom::Rigid);
     let of: BTreeMap<_, Slack> = rows.iter().zip(slack).map(|(r, s)| (key(r), *s)).collect();
     stress.forces.iter().map(|f| of.get(&key(&f.row)).copied()).collect()
 }

@@ -13,13 +13,14 @@ pub use refine::{Level, Refined, refined};
 use crate::assembly::PartIx;
 use crate::contact::chord::{self, ChordError};
 use crate::contact::{Joined, Origin, Patch, Slack};
-use crate::locking::digits::{self, Within};
+use crate::locking::digits::{self, Within, rows_with_slack};
 use crate::locking::margin::{self, Effort, Weighted};
 use crate::locking::{Check, Freedom, Motion, Row, Stress, Unknowns, Verdict, decide, rows};
 use glam::DVec3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
+use std::f64::consts::FRAC_PI_2;
 
 /// By how much the contact rows may be wrong before a verdict falls.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -181,14 +182,16 @@ impl Ground<'_> {
             Origin::Woven(_) => "the facets' errors",
             Origin::Meshes => "what the files' digits leave open",
         };
-        let slack: Vec<Slack> =
-            of.errors.iter().map(|e| Slack { angle: e.angle, distance: e.distance }).collect();
         let survives = match self.joined.origin {
             Origin::Meshes => {
-                matches!(digits::within(&of.rows, &of.unknowns, &slack, stress), Within::Survives)
+                let (rows, slack) =
+                    rows_with_slack(&self.joined.patches, &self.joined.slack, of.unknowns.freedom);
+                matches!(digits::within(&rows, &of.unknowns, &slack, stress), Within::Survives)
             }
             // Facets err by so much that more effort is in vain where the plain bound falls.
             Origin::Woven(_) => {
+                let slack: Vec<Slack> =
+                    of.errors.iter().map(|e| Slack { angle: e.angle, distance: e.distance }).collect();
                 let change = digits::changes(&of.rows, &of.unknowns, &slack);
                 change.iter().all(|c| c.is_finite())
                     && margin::lock(&of.weighted(change), stress, Effort::Plain)
@@ -199,9 +202,10 @@ impl Ground<'_> {
             return (Beyond::Holds, format!("the lock survives every change of the contacts within {what}"));
         }
         let Origin::Woven(woven) = &self.joined.origin else {
+            let known = self.joined.slack.iter().map(|s| s.angle).filter(|a| *a < FRAC_PI_2);
             let why = format!(
-                "normals are known to {:.1e} rad at worst, and the lock is not shown to survive that",
-                most.angle
+                "the lock leans on normals known to {:.1e} rad at worst, and is not shown to survive that",
+                known.fold(0.0, f64::max)
             );
             return (Beyond::Unproven, why);
         };
