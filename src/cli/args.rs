@@ -148,6 +148,32 @@ pub enum Verb {
     Schema,
 }
 
+impl Verb {
+    /// What is said to run; nothing of verbs that tell of themselves.
+    pub fn stage(&self) -> Option<&'static str> {
+        Some(match self {
+            Verb::Run { .. } | Verb::Atlas(_) => return None,
+            Verb::Check { .. } => "check",
+            Verb::Plan { .. } => "plan",
+            Verb::Play(_) => "play",
+            Verb::Release(_) => "release",
+            Verb::Blocking(_) => "blocking",
+            Verb::Flex(_) => "flex",
+            Verb::Repeats(_) => "repeats",
+            Verb::Chirality { .. } => "chirality",
+            Verb::Weave { .. } => "weave",
+            Verb::Fab(_) => "fab",
+            Verb::Export(_) => "export",
+            Verb::Draw(_) => "draw",
+            Verb::Verify { .. } => "verify",
+            Verb::Report { .. } => "report",
+            Verb::Processes { .. } | Verb::New(_) | Verb::Completions { .. } | Verb::Man | Verb::Schema => {
+                return None;
+            }
+        })
+    }
+}
+
 /// What a package is made of, and how.
 #[derive(ClapArgs, Debug)]
 pub struct Fab {

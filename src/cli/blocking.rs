@@ -7,7 +7,7 @@ use super::told::{News, Told, Trouble};
 use crate::assembly::Mobility;
 use crate::blocking::Touch;
 use crate::blocking::graph::{self, Dbg, infinitesimal, pairs, tie};
-use crate::blocking::ndbg::{Ndbg, NotRun, Reach, ndbg};
+use crate::blocking::ndbg::{Ndbg, NotRun, Reach, ndbg_watched};
 use crate::blocking::shadow::{Shapes, View};
 use crate::contact::Joined;
 use crate::report::answer::{self, BlockingAnswer, Connected, DbgAnswer, Found};
@@ -64,7 +64,7 @@ pub fn blocking(placed: &Placed, asked: &Blocking) -> Result<Told, Trouble> {
     };
     let touching = pairs(&joined.patches);
     let all = (asked.direction.is_none() || asked.sphere.is_some())
-        .then(|| ndbg(&joined.assembly, &joined.patches, &touching, reach));
+        .then(|| ndbg_watched(&joined.assembly, &joined.patches, &touching, reach, &placed.watch));
     let found = Found { reach, dbg: one, ndbg: all.as_ref(), not_run };
     let answer = answer::blocking(joined, found, placed.source.clone());
     write(asked, &answer, all.as_ref())?;
