@@ -4,6 +4,7 @@ mod build;
 mod journeys;
 mod made;
 mod turns;
+mod wanted;
 mod woven;
 
 use build::{assembly, cell, cuboid, prism, turned, v};

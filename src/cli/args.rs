@@ -86,6 +86,8 @@ pub enum Verb {
         /// Air on each face of a contact, as "0.5 mm": plans for parts made with that clearance
         #[arg(long, value_name = "LENGTH", value_parser = length)]
         clearance: Option<f64>,
+        #[command(flatten)]
+        wanted: super::preferred::Asked,
     },
     /// How far do parts made with air shift and tilt? `weavelock play plain.toml --clearance "0.2 mm"`
     Play(super::play::Asked),

@@ -43,7 +43,7 @@ pub struct Blocking {
 }
 
 /// Three numbers, not all zero; the unit vector along them.
-fn direction(text: &str) -> Result<DVec3, String> {
+pub(super) fn direction(text: &str) -> Result<DVec3, String> {
     let numbers: Result<Vec<f64>, _> = text.split(',').map(|t| t.trim().parse::<f64>()).collect();
     let wrong = || "give three numbers that are not all zero, as 0,0,1".to_string();
     let numbers: [f64; 3] = numbers.map_err(|_| wrong())?.try_into().map_err(|_| wrong())?;

@@ -20,6 +20,7 @@ mod paged;
 mod pictured;
 mod planned;
 mod play;
+mod preferred;
 mod puzzle;
 mod questions;
 mod release;
@@ -75,8 +76,8 @@ fn dispatch(args: &Args, watch: &Watch) -> Result<Told, Trouble> {
         Some(Verb::Check { file, fix, refine }) => {
             check::check(&load::spec(file, puzzle, watch)?.joined()?, fix.as_deref(), *refine)
         }
-        Some(Verb::Plan { file, of, clearance }) => {
-            questions::plan(&load::spec(file, puzzle, watch)?.joined()?, of, clearance.unwrap_or(0.0))
+        Some(Verb::Plan { file, of, clearance, wanted }) => {
+            questions::plan(&load::spec(file, puzzle, watch)?.joined()?, of, clearance.unwrap_or(0.0), wanted)
         }
         Some(Verb::Play(asked)) => play::play(asked, puzzle, watch),
         Some(Verb::Release(asked)) => release::release(asked, puzzle, watch),

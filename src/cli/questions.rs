@@ -3,6 +3,7 @@
 //! Not promised: anything beyond what the stage that answers promises.
 
 use super::load::{self, Placed};
+use super::preferred;
 use super::puzzle;
 use super::told::{News, Told, Trouble};
 use super::words;
@@ -120,7 +121,12 @@ pub fn locked(joined: &Joined, set: &[PartIx]) -> Option<Certificate> {
     Some(answer::certificate(&joined.assembly, &still, &core.stress))
 }
 
-pub fn plan(placed: &Placed, of: &[String], clearance_mm: f64) -> Result<Told, Trouble> {
+pub fn plan(
+    placed: &Placed,
+    of: &[String],
+    clearance_mm: f64,
+    wanted: &preferred::Asked,
+) -> Result<Told, Trouble> {
     let joined = &placed.joined;
     let mut parts = of.iter().map(|id| part(joined, id.trim())).collect::<Result<Vec<_>, _>>()?;
     if parts.is_empty() {
@@ -128,7 +134,7 @@ pub fn plan(placed: &Placed, of: &[String], clearance_mm: f64) -> Result<Told, T
     }
     parts.sort_unstable();
     parts.dedup();
-    Ok(told_plan(placed, &planned(placed, &parts, clearance_mm)))
+    Ok(told_plan(placed, &preferred::applied(placed, planned(placed, &parts, clearance_mm), wanted)?))
 }
 
 pub fn told_plan(placed: &Placed, answer: &PlanAnswer) -> Told {
@@ -137,6 +143,7 @@ pub fn told_plan(placed: &Placed, answer: &PlanAnswer) -> Told {
     chapter
         .facts
         .insert(0, ("clearance".into(), format!("{} mm on each face of a contact", answer.clearance_mm)));
+    answer.preferences.iter().for_each(|p| preferred::tell(&mut chapter, p));
     Told {
         remarks: answer.remarks.clone(),
         ..Told::new(news, answer, &answer.name, "How it goes together", chapter)

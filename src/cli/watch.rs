@@ -100,7 +100,7 @@ pub fn line(seen: &[Seen], so_far: Duration, on_stage: Duration) -> String {
         ("", _) => s.what.clone(),
         (unit, All::Open) => format!("{}, {} {unit}", s.what, s.done),
         (unit, All::Just(all)) => format!("{}, {} of {all} {unit}", s.what, s.done),
-        (unit, All::AtMost(most)) => format!("{}, {} of at most {most} {unit}", s.what, s.done),
+        (unit, All::AtMost(most)) => format!("{}, {} of up to {most} {unit}", s.what, s.done),
     };
     let stages: Vec<String> = seen.iter().map(told).collect();
     let left = counting(seen).and_then(|s| left(s, on_stage)).unwrap_or_default();
@@ -109,9 +109,9 @@ pub fn line(seen: &[Seen], so_far: Duration, on_stage: Duration) -> String {
     short(stages, room) + &times
 }
 
-/// In so many letters; what stands between the first and the last goes before letters do.
+/// In so many letters; what stands before the last stage goes before letters do, the outermost last.
 fn short(mut stages: Vec<String>, room: usize) -> String {
-    while stages.len() > 2 && stages.iter().map(|s| s.chars().count() + 2).sum::<usize>() > room + 2 {
+    while stages.len() > 1 && stages.iter().map(|s| s.chars().count() + 2).sum::<usize>() > room + 2 {
         stages.remove(stages.len() - 2);
     }
     stages.join(": ").chars().take(room).collect()
@@ -122,7 +122,7 @@ fn left(s: &Seen, on_stage: Duration) -> Option<String> {
     let (all, word) = match s.all {
         All::Open => return None,
         All::Just(all) => (all, "about"),
-        All::AtMost(most) => (most, "at most about"),
+        All::AtMost(most) => (most, "up to"),
     };
     let share = all.saturating_sub(s.done) as f64 / s.done as f64;
     let left = Duration::try_from_secs_f64(on_stage.as_secs_f64() * share).ok()?;
@@ -178,10 +178,10 @@ mod tests {
         let plan = [seen("plan", "", 0, All::Open), seen("apart", "positions", 50, All::AtMost(100))];
         assert_eq!(
             line(&plan, s(200), s(150)),
-            "plan: apart, 50 of at most 100 positions; 4 min, at most about 3 min left"
+            "plan: apart, 50 of up to 100 positions; 4 min, up to 3 min left"
         );
         let none = [seen("plan", "positions", 0, All::AtMost(100))];
-        assert_eq!(line(&none, s(5), s(5)), "plan, 0 of at most 100 positions; 5 s");
+        assert_eq!(line(&none, s(5), s(5)), "plan, 0 of up to 100 positions; 5 s");
         let three = ["release", "a stage between the two that has a long name", "the innermost of all"];
         let three = three.map(|name| seen(name, "", 0, All::Open));
         assert_eq!(line(&three, s(5), s(5)), "release: the innermost of all; 5 s");

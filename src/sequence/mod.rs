@@ -23,6 +23,7 @@ pub mod lattice;
 pub mod leave;
 mod motion;
 mod singles;
+pub mod wanted;
 
 pub use answer::{Gives, Order, Outcome, Past, Plan, Reached, Searched, Step, Straight, Stuck};
 pub use motion::{Ends, Motion, Mover, Rigid, Screw, Shift};

@@ -64,7 +64,7 @@ pub fn on_lattice_watched(
     let most = most.unwrap_or(MOST_BYTES / (3 * parts.len() + BYTES_BESIDE));
     let all: Vec<usize> = (0..parts.len()).collect();
     let scene = Scene::new(pieces);
-    let stage = watch.stage("taking it apart along the axes", "positions", All::AtMost(most as u64));
+    let stage = watch.stage("moves along the axes", "positions", All::AtMost(most as u64));
     let apart = take_apart(&scene, &all, most, &Looks { watch, stage });
     Ok(OnLattice { lattice, pieces: scene.pieces, apart, most })
 }
