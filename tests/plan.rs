@@ -3,6 +3,7 @@
 mod build;
 mod journeys;
 mod made;
+mod stuck;
 mod turns;
 mod wanted;
 mod woven;

@@ -147,7 +147,7 @@ fn hands(a: &PreferredAnswer) -> Table {
     let rows = a
         .held_in_air
         .iter()
-        .map(|h| vec![h.step.to_string(), h.parts.join(", "), format!("{:.0} %", 100.0 * h.share)]);
+        .map(|h| vec![h.step.to_string(), h.parts.join(", "), format!("{:.1} %", 100.0 * h.share)]);
     Table {
         caption:
             "Hold these once the step is done, until more is in place; share of the weight, frictionless"

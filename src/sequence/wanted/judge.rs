@@ -10,7 +10,10 @@ use super::rest::{Pile, Rest, lowest, rest};
 use super::{Shop, Table, Wish, out_along};
 use crate::assembly::PartIx;
 use crate::blocking::SAME_ANGLE;
+use crate::watch::All;
 use glam::DVec3;
+use rayon::prelude::*;
+use std::collections::BTreeMap;
 
 /// What a plan counts.
 #[derive(Clone, Debug, PartialEq)]
@@ -99,22 +102,25 @@ pub fn moves(shop: &Shop, steps: &[Step]) -> Judged {
 fn rests(shop: &Shop, steps: &[Step]) -> Vec<Rest> {
     let inside = steps.iter().any(|s| s.ends == Ends::Inside);
     let floors = floors(shop, steps);
+    let watch = &shop.field.watch;
+    let stage = watch.stage("what rests", "steps", All::Just(steps.len() as u64));
     let one = |(k, s): (usize, &Step)| {
-        if inside {
+        if inside || watch.is_stopped() {
             return Rest::Undecided;
         }
         let (mut set, stays) = (shop.set(&s.parts), shop.set(&s.stays));
         set.extend(&stays);
-        judged(shop, &set, floors[k], first_placed(shop, stays, &steps[k + 1..]))
+        let rest = judged(shop, &set, floors[k], first_placed(shop, stays, &steps[k + 1..]));
+        stage.add(1);
+        rest
     };
-    use rayon::prelude::*;
     let each: Vec<(usize, &Step)> = steps.iter().enumerate().collect();
     each.into_par_iter().map(one).collect()
 }
 
 /// The height of the table for each step: what stays keeps its place, what is built apart gets a table of its own.
 pub fn floors(shop: &Shop, steps: &[Step]) -> Vec<f64> {
-    let mut known: std::collections::BTreeMap<Set, f64> = std::collections::BTreeMap::new();
+    let mut known: BTreeMap<Set, f64> = BTreeMap::new();
     let low = |p: &PartIx| lowest(shop.field.asm, *p, shop.ask.up);
     let of = |s: &Step| {
         let (mut set, stays) = (shop.set(&s.parts), shop.set(&s.stays));

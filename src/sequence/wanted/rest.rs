@@ -23,6 +23,10 @@ const MOST_CORNERS: usize = 20_000;
 /// By how much a hand on the highest part costs more than on the lowest: little, so that the least sum stays nearly that.
 const HIGHER_COSTS: f64 = 1.0 / 64.0;
 
+/// Of a push, where a hand costs 1: parts wedged so that only pushes of a million times all weight would bear them count as
+/// held. Without it pushes that balance each other may grow without end, and the solver does not come to one.
+const PUSH_COSTS: f64 = 1.0 / (1u64 << 20) as f64;
+
 #[derive(Clone, Debug, PartialEq)]
 pub enum Rest {
     Rests,
@@ -111,58 +115,77 @@ fn solved(pile: &Pile, pushes: &[&Push]) -> Option<Rest> {
     if free.is_empty() {
         return Some(Rest::Rests);
     }
-    let masses: Vec<(f64, DVec3)> = free.iter().map(|&p| mass(pile.asm, p)).collect();
-    let total: f64 = masses.iter().map(|m| m.0).sum();
-    let lever = span(pile.asm, &free);
-    let (pushes_count, rows) = (pushes.len(), 6 * free.len());
-    let (mut is, mut js, mut vs) = (Vec::new(), Vec::new(), Vec::new());
-    let mut put = |i: usize, j: usize, v: f64| {
-        if v != 0.0 {
-            is.push(i);
-            js.push(j);
-            vs.push(v);
-        }
-    };
-    for (j, push) in pushes.iter().enumerate() {
-        for (part, sign) in push.on.iter().zip([-1.0, 1.0]) {
-            let Some(k) = part.and_then(|p| free.iter().position(|&q| q == p)) else { continue };
-            let moment = (push.point - masses[k].1).cross(push.normal) / lever;
-            let six = push.normal.to_array().into_iter().chain(moment.to_array());
-            six.enumerate().for_each(|(d, v)| put(6 * k + d, j, sign * v));
-        }
-    }
-    // Hands: each of the six components of each part, both ways.
-    for i in 0..rows {
-        put(i, pushes_count + 2 * i, 1.0);
-        put(i, pushes_count + 2 * i + 1, -1.0);
-    }
-    let unknowns = pushes_count + 2 * rows;
-    for j in 0..unknowns {
-        put(rows + j, j, -1.0);
-    }
-    let mut limits = vec![0.0; rows + unknowns];
-    for (k, (weight, _)) in masses.iter().enumerate() {
-        let lift = pile.up * (weight / total);
-        lift.to_array().into_iter().enumerate().for_each(|(d, v)| limits[6 * k + d] = v);
-    }
-    let mut cost = vec![0.0; unknowns];
-    for (k, dear) in dearness(&masses, pile.up).into_iter().enumerate() {
-        cost[pushes_count + 12 * k..pushes_count + 12 * (k + 1)].fill(dear);
-    }
-    let matrix = CscMatrix::new_from_triplets(rows + unknowns, unknowns, is, js, vs);
+    let statics = Statics::new(pile, &free);
+    let (matrix, limits) = statics.balance(pushes, pile.up);
+    let cost = statics.cost(pushes.len(), pile.up);
     let settings = DefaultSettings { verbose: false, ..DefaultSettings::default() };
-    let cones = [ZeroConeT(rows), NonnegativeConeT(unknowns)];
-    let none = CscMatrix::zeros((unknowns, unknowns));
+    let cones = [ZeroConeT(statics.rows()), NonnegativeConeT(cost.len())];
+    let none = CscMatrix::zeros((cost.len(), cost.len()));
     let mut solver = DefaultSolver::new(&none, &cost, &matrix, &limits, &cones, settings).ok()?;
     solver.solve();
     if !matches!(solver.solution.status, SolverStatus::Solved) {
         return None;
     }
-    let hands = &solver.solution.x[pushes_count..];
+    let hands = &solver.solution.x[pushes.len()..];
     let of = |k: usize| hands[12 * k..12 * (k + 1)].iter().map(|h| h.max(0.0)).sum::<f64>();
     let parts: Vec<PartIx> = (0..free.len()).filter(|&k| of(k) > SOLVED_TO).map(|k| free[k]).collect();
     let share = (0..free.len()).map(of).sum();
     Some(if parts.is_empty() { Rest::Rests } else { Rest::Held { parts, share } })
+}
+
+/// The parts that must be borne, and what they weigh.
+struct Statics<'f> {
+    free: &'f [PartIx],
+    /// Volume and centre of mass.
+    masses: Vec<(f64, DVec3)>,
+    /// Makes moments comparable with forces: the size of all of them.
+    lever: f64,
+}
+
+impl<'f> Statics<'f> {
+    fn new(pile: &Pile, free: &'f [PartIx]) -> Self {
+        let masses = free.iter().map(|&p| mass(pile.asm, p)).collect();
+        Statics { free, masses, lever: span(pile.asm, free) }
+    }
+
+    /// Three forces and three moments for each part.
+    fn rows(&self) -> usize {
+        6 * self.free.len()
+    }
+
+    /// Rows of balance (all weight is 1), then of unknowns that are at least 0: pushes, and hands both ways on each row.
+    fn balance(&self, pushes: &[&Push], up: DVec3) -> (CscMatrix, Vec<f64>) {
+        let (mut is, mut js, mut vs) = (Vec::new(), Vec::new(), Vec::new());
+        let mut put = |i: usize, j: usize, v: f64| {
+            is.push(i);
+            js.push(j);
+            vs.push(v);
+        };
+        for (j, push) in pushes.iter().enumerate() {
+            for (part, sign) in push.on.iter().zip([-1.0, 1.0]) {
+                let Some(k) = part.and_then(|p| self.free.iter().position(|&q| q == p)) else { continue };
+                let moment = (push.point - self.masses[k].1).cross(push.normal) / self.lever;
+                let six = push.normal.to_array().into_iter().chain(moment.to_array());
+                six.enumerate().for_each(|(d, v)| put(6 * k + d, j, sign * v));
+            }
+        }
+        let (rows, unknowns) = (self.rows(), pushes.len() + 2 * self.rows());
+        for i in 0..rows {
+            put(i, pushes.len() + 2 * i, 1.0);
+            put(i, pushes.len() + 2 * i + 1, -1.0);
+        }
+        (0..unknowns).for_each(|j| put(rows + j, j, -1.0));
+        let total: f64 = self.masses.iter().map(|m| m.0).sum();
+        let lift = |(weight, _): &(f64, DVec3)| [(up * (weight / total)).to_array(), [0.0; 3]].concat();
+        let limits = self.masses.iter().flat_map(lift).chain(std::iter::repeat_n(0.0, unknowns)).collect();
+        (CscMatrix::new_from_triplets(rows + unknowns, unknowns, is, js, vs), limits)
+    }
+
+    /// Pushes cost next to nothing, hands what they bear.
+    fn cost(&self, pushes: usize, up: DVec3) -> Vec<f64> {
+        let hands = dearness(&self.masses, up).into_iter().flat_map(|dear| [dear; 12]);
+        std::iter::repeat_n(PUSH_COSTS, pushes).chain(hands).collect()
+    }
 }
 
 /// What a hand costs on each part: a little more on higher ones.
