@@ -32,4 +32,5 @@ pub mod solid;
 pub mod spec;
 pub mod tile;
 pub mod verify;
+pub mod watch;
 pub mod weave;

@@ -29,6 +29,7 @@ mod release;
 mod repeats;
 mod report;
 mod second;
+mod stop;
 mod structure;
 mod support;
 mod twins;

@@ -3,7 +3,9 @@
 mod build;
 mod journeys;
 mod made;
+mod stuck;
 mod turns;
+mod wanted;
 mod woven;
 
 use build::{assembly, cell, cuboid, prism, turned, v};

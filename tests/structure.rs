@@ -7,7 +7,7 @@ use std::path::Path;
 
 /// Each module of `src` and the modules that it may use. What stands in one line never uses its neighbours there.
 const FLOW: [&[&str]; 19] = [
-    &["fault", "solid"],
+    &["fault", "solid", "watch"],
     &["input"],
     &["weave"],
     &["spec"],

@@ -86,6 +86,8 @@ pub enum Verb {
         /// Air on each face of a contact, as "0.5 mm": plans for parts made with that clearance
         #[arg(long, value_name = "LENGTH", value_parser = length)]
         clearance: Option<f64>,
+        #[command(flatten)]
+        wanted: super::preferred::Asked,
     },
     /// How far do parts made with air shift and tilt? `weavelock play plain.toml --clearance "0.2 mm"`
     Play(super::play::Asked),
@@ -146,6 +148,32 @@ pub enum Verb {
     Man,
     /// JSON Schema of the files in and of every answer: `weavelock schema`
     Schema,
+}
+
+impl Verb {
+    /// What is said to run; nothing of verbs that tell of themselves.
+    pub fn stage(&self) -> Option<&'static str> {
+        Some(match self {
+            Verb::Run { .. } | Verb::Atlas(_) => return None,
+            Verb::Check { .. } => "check",
+            Verb::Plan { .. } => "plan",
+            Verb::Play(_) => "play",
+            Verb::Release(_) => "release",
+            Verb::Blocking(_) => "blocking",
+            Verb::Flex(_) => "flex",
+            Verb::Repeats(_) => "repeats",
+            Verb::Chirality { .. } => "chirality",
+            Verb::Weave { .. } => "weave",
+            Verb::Fab(_) => "fab",
+            Verb::Export(_) => "export",
+            Verb::Draw(_) => "draw",
+            Verb::Verify { .. } => "verify",
+            Verb::Report { .. } => "report",
+            Verb::Processes { .. } | Verb::New(_) | Verb::Completions { .. } | Verb::Man | Verb::Schema => {
+                return None;
+            }
+        })
+    }
 }
 
 /// What a package is made of, and how.

@@ -199,7 +199,8 @@ impl Meter {
     }
 }
 
-fn time(left: Duration) -> String {
+/// A length of time in few letters.
+pub fn time(left: Duration) -> String {
     match left.as_secs() {
         s @ 0..=99 => format!("{s} s"),
         s @ 100..=5999 => format!("{} min", s.div_ceil(60)),

@@ -7,7 +7,7 @@ use super::told::{News, Told, Trouble};
 use crate::assembly::Mobility;
 use crate::blocking::Touch;
 use crate::blocking::graph::{self, Dbg, infinitesimal, pairs, tie};
-use crate::blocking::ndbg::{Ndbg, NotRun, Reach, ndbg};
+use crate::blocking::ndbg::{Ndbg, NotRun, Reach, ndbg_watched};
 use crate::blocking::shadow::{Shapes, View};
 use crate::contact::Joined;
 use crate::report::answer::{self, BlockingAnswer, Connected, DbgAnswer, Found};
@@ -43,7 +43,7 @@ pub struct Blocking {
 }
 
 /// Three numbers, not all zero; the unit vector along them.
-fn direction(text: &str) -> Result<DVec3, String> {
+pub(super) fn direction(text: &str) -> Result<DVec3, String> {
     let numbers: Result<Vec<f64>, _> = text.split(',').map(|t| t.trim().parse::<f64>()).collect();
     let wrong = || "give three numbers that are not all zero, as 0,0,1".to_string();
     let numbers: [f64; 3] = numbers.map_err(|_| wrong())?.try_into().map_err(|_| wrong())?;
@@ -64,7 +64,7 @@ pub fn blocking(placed: &Placed, asked: &Blocking) -> Result<Told, Trouble> {
     };
     let touching = pairs(&joined.patches);
     let all = (asked.direction.is_none() || asked.sphere.is_some())
-        .then(|| ndbg(&joined.assembly, &joined.patches, &touching, reach));
+        .then(|| ndbg_watched(&joined.assembly, &joined.patches, &touching, reach, &placed.watch));
     let found = Found { reach, dbg: one, ndbg: all.as_ref(), not_run };
     let answer = answer::blocking(joined, found, placed.source.clone());
     write(asked, &answer, all.as_ref())?;

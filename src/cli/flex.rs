@@ -13,6 +13,7 @@ use crate::flex::{self, Ask, SAME_VERTEX, WORK, Wanted};
 use crate::report::answer::{self, FlexAnswer};
 use crate::report::content::{Chapter, Column, Table, Tone};
 use crate::spec::Subject;
+use crate::watch::Watch;
 use clap::Args;
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
@@ -61,8 +62,8 @@ fn duration(text: &str) -> Result<Duration, String> {
     Duration::try_from_secs_f64(seconds).map_err(|_| hint())
 }
 
-pub fn flex(asked: &Asked, puzzle: &PuzzleArgs) -> Result<Told, Trouble> {
-    let placed = load::spec(&asked.file, puzzle)?.joined()?;
+pub fn flex(asked: &Asked, puzzle: &PuzzleArgs, watch: &Watch) -> Result<Told, Trouble> {
+    let placed = load::spec(&asked.file, puzzle, watch)?.joined()?;
     let wanted = if asked.minimal { Wanted::Minimal } else { Wanted::Smallest };
     let clearance_mm = asked.clearance.unwrap_or(0.0);
     let settings = Settings { clearance_mm, wanted, work: asked.work, time: asked.time };
@@ -82,7 +83,7 @@ pub fn flexed(placed: &Placed, settings: &Settings) -> Result<FlexAnswer, Troubl
         until: settings.time.and_then(|t| Instant::now().checked_add(t)),
         within,
     };
-    let found = flex::flex(joined.touching(), &ask).map_err(|why| {
+    let found = flex::flex_watched(joined.touching(), &ask, &placed.watch).map_err(|why| {
         argument(
             format!("not searched: {why}"),
             "flexible parts are found by plans, and plans need parts made of convex cells, thicker than the air".into(),
@@ -180,6 +181,7 @@ fn facts(a: &FlexAnswer) -> Vec<(String, String)> {
         "complete" => "all are listed",
         "smallest-complete" => "all of the least size are listed, larger ones may be missing",
         "time" => "more may exist: the time was up",
+        "stopped" => "more may exist: the user stopped it",
         "many" => "more may exist: too many to list",
         _ => "more may exist: the work allowed was spent",
     };

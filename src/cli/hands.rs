@@ -18,12 +18,18 @@ use crate::report::content::{Chapter, Column, Table, Tone};
 use crate::report::export;
 use crate::report::file::write_whole;
 use crate::spec::Subject;
+use crate::watch::Watch;
 use std::path::Path;
 
-pub fn chirality(subject: &str, folder: Option<&Path>, puzzle: &PuzzleArgs) -> Result<Told, Trouble> {
+pub fn chirality(
+    subject: &str,
+    folder: Option<&Path>,
+    puzzle: &PuzzleArgs,
+    watch: &Watch,
+) -> Result<Told, Trouble> {
     let path = Path::new(subject);
     if load::is_spec(path) {
-        let placed = load::spec(path, puzzle)?.joined()?;
+        let placed = load::spec(path, puzzle, watch)?.joined()?;
         let hands = found(&placed)?;
         let twin = folder.map(|folder| exported(&placed, folder)).transpose()?;
         return Ok(told(&Hands { twin, ..hands }));
@@ -105,7 +111,8 @@ fn side(placed: &Placed, way: Way, folder: &Path, files: &mut Vec<String>) -> Re
         (Subject::Woven(_), Origin::Meshes) => String::new(),
     };
     put(format!("{word}.toml"), text.as_bytes())?;
-    let back = load::spec(&folder.join(format!("{word}.toml")), &PuzzleArgs::default())?.joined()?;
+    let back =
+        load::spec(&folder.join(format!("{word}.toml")), &PuzzleArgs::default(), &placed.watch)?.joined()?;
     let (asm, all) = (&back.joined.assembly, back.joined.assembly.ids().collect::<Vec<_>>());
     put(format!("{word}.mm.stl"), &export::stl(asm, &all))?;
     put(format!("{word}.mm.obj"), &export::obj(asm, &all))?;

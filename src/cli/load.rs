@@ -4,6 +4,7 @@
 
 use super::args::PuzzleArgs;
 use super::puzzle;
+use super::told::Trouble;
 use crate::contact::{self, Joined};
 use crate::fault::{Fault, Faults};
 use crate::input;
@@ -12,6 +13,7 @@ use crate::report::answer::Source;
 use crate::sampling;
 use crate::spec::puzzle::is_named;
 use crate::spec::{self, Spec, Subject, Syntax};
+use crate::watch::{All, Watch};
 use crate::weave::{Hanging, Weave, hangs_together};
 use std::path::Path;
 
@@ -21,6 +23,8 @@ pub struct Loaded {
     pub source: Source,
     /// What was taken where nothing was said.
     pub remarks: Vec<String>,
+    /// Told how far the questions asked about it are.
+    pub watch: Watch,
 }
 
 /// The assembly of a spec, in place.
@@ -28,37 +32,45 @@ pub struct Placed {
     pub spec: Spec,
     pub source: Source,
     pub joined: Joined,
+    pub watch: Watch,
 }
 
 /// Reads a spec or puzzle file; `asked` goes with the latter.
-pub fn spec(file: &Path, asked: &PuzzleArgs) -> Result<Loaded, Faults> {
+pub fn spec(file: &Path, asked: &PuzzleArgs, watch: &Watch) -> Result<Loaded, Trouble> {
     if is_named(file) {
-        return puzzle::loaded(file, asked);
+        return puzzle::loaded(file, asked, watch);
     }
     if asked.some().is_some() {
-        return Err(no_puzzle(file));
+        return Err(no_puzzle(file).into());
     }
     let text = input::text(input::bytes(file)?, file)?;
     let spec = spec::parse(&text, file, Syntax::of(file, &text))?;
-    Ok(Loaded { spec, source: Source { file: file.display().to_string(), text }, remarks: Vec::new() })
+    Ok(Loaded::new(spec, text, watch))
 }
 
 /// The example that the program carries.
-pub fn example() -> Result<Loaded, Faults> {
+pub fn example(watch: &Watch) -> Result<Loaded, Faults> {
     let text = include_str!("../../fixtures/examples/plain-2x2.toml").to_string();
     let file = Path::new("plain-2x2.toml");
     let spec = spec::parse(&text, file, Syntax::Toml)?;
-    Ok(Loaded { spec, source: Source { file: file.display().to_string(), text }, remarks: Vec::new() })
+    Ok(Loaded::new(spec, text, watch))
 }
 
 impl Loaded {
+    pub fn new(spec: Spec, text: String, watch: &Watch) -> Loaded {
+        let source = Source { file: spec.file.display().to_string(), text };
+        Loaded { spec, source, remarks: Vec::new(), watch: watch.clone() }
+    }
+
     pub fn joined(self) -> Result<Placed, Faults> {
+        let stage = self.watch.stage("parts and contacts", "", All::Open);
         let mut joined = contact::join(&self.spec)?;
+        drop(stage);
         if let Subject::Woven(woven) = &self.spec.subject {
             joined.remarks.extend(falls_apart(&woven.weave));
         }
         joined.remarks.splice(0..0, self.remarks);
-        Ok(Placed { spec: self.spec, source: self.source, joined })
+        Ok(Placed { spec: self.spec, source: self.source, joined, watch: self.watch })
     }
 }
 
@@ -91,7 +103,8 @@ pub fn weave(subject: &str) -> Result<Weave, Faults> {
     if !is_spec(path) {
         return Weave::read(path);
     }
-    match spec(path, &PuzzleArgs::default())?.spec.subject {
+    let read = |text: String| spec::parse(&text, path, Syntax::of(path, &text));
+    match input::bytes(path).and_then(|b| input::text(b, path)).and_then(read)?.subject {
         Subject::Woven(woven) => Ok(woven.weave),
         Subject::Meshes(_) => Err(no_weave(path)),
     }

@@ -20,6 +20,7 @@ mod paged;
 mod pictured;
 mod planned;
 mod play;
+mod preferred;
 mod puzzle;
 mod questions;
 mod release;
@@ -29,8 +30,10 @@ mod run;
 mod schema;
 mod shell;
 mod told;
+mod watch;
 mod words;
 
+use crate::watch::{All, Watch};
 use args::{Args, Common, Verb};
 use std::io::Write;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -44,43 +47,62 @@ pub fn main(args: Args) -> ExitCode {
         let _ = rayon::ThreadPoolBuilder::new().num_threads(usize::from(n)).build_global();
     }
     std::panic::set_hook(Box::new(|_| {}));
-    match guarded(|| dispatch(&args)).and_then(|told| print(&told, &args.common)) {
+    match guarded(|| watched(&args)).and_then(|told| print(&told, &args.common)) {
         Ok(News::Good) => ExitCode::SUCCESS,
         Ok(News::Other) => ExitCode::from(1),
         Err(trouble) => {
             let _ = writeln!(std::io::stderr(), "{trouble}");
-            ExitCode::from(2)
+            ExitCode::from(if matches!(trouble, Trouble::Stopped(_)) { watch::INTERRUPTED } else { 2 })
         }
     }
 }
 
-fn dispatch(args: &Args) -> Result<Told, Trouble> {
+/// The verb's answer; on a terminal its progress is shown, and Ctrl-C heard where that leaves an answer.
+fn watched(args: &Args) -> Result<Told, Trouble> {
+    let watch = Watch::default();
+    if watch::can_stop(args.verb.as_ref()) {
+        watch::hear(&watch, args.common.quiet);
+    }
+    let _line = watch::shown(&watch, &args.common);
+    dispatch(args, &watch)
+}
+
+fn dispatch(args: &Args, watch: &Watch) -> Result<Told, Trouble> {
     let puzzle = &args.common.puzzle;
+    let _stage = args.verb.as_ref().and_then(Verb::stage).map(|name| watch.stage(name, "", All::Open));
     match &args.verb {
-        None => run::example(&args.common),
-        Some(Verb::Run { file, out }) => run::file(file, out, &args.common),
+        None => run::example(&args.common, watch),
+        Some(Verb::Run { file, out }) => run::file(file, out, &args.common, watch),
         Some(Verb::Check { file, fix, refine }) => {
-            check::check(&load::spec(file, puzzle)?.joined()?, fix.as_deref(), *refine)
+            check::check(&load::spec(file, puzzle, watch)?.joined()?, fix.as_deref(), *refine)
         }
-        Some(Verb::Plan { file, of, clearance }) => {
-            questions::plan(&load::spec(file, puzzle)?.joined()?, of, clearance.unwrap_or(0.0))
+        Some(Verb::Plan { file, of, clearance, wanted }) => {
+            questions::plan(&load::spec(file, puzzle, watch)?.joined()?, of, clearance.unwrap_or(0.0), wanted)
         }
-        Some(Verb::Play(asked)) => play::play(asked, puzzle),
-        Some(Verb::Release(asked)) => release::release(asked, puzzle),
-        Some(Verb::Blocking(asked)) => blocking::blocking(&load::spec(&asked.file, puzzle)?.joined()?, asked),
-        Some(Verb::Flex(asked)) => flex::flex(asked, puzzle),
-        Some(Verb::Repeats(asked)) => repeats::repeats(asked),
-        Some(Verb::Chirality { subject, export }) => hands::chirality(subject, export.as_deref(), puzzle),
+        Some(Verb::Play(asked)) => play::play(asked, puzzle, watch),
+        Some(Verb::Release(asked)) => release::release(asked, puzzle, watch),
+        Some(Verb::Blocking(asked)) => {
+            blocking::blocking(&load::spec(&asked.file, puzzle, watch)?.joined()?, asked)
+        }
+        Some(Verb::Flex(asked)) => flex::flex(asked, puzzle, watch),
+        Some(Verb::Repeats(asked)) => repeats::repeats(asked, watch),
+        Some(Verb::Chirality { subject, export }) => {
+            hands::chirality(subject, export.as_deref(), puzzle, watch)
+        }
         Some(Verb::Weave { subject, svg, wif }) => questions::weave(subject, svg.as_deref(), wif.as_deref()),
         Some(Verb::Fab(asked)) => {
-            package::fab(&load::spec(&asked.file, puzzle)?.joined()?, asked, &args.common)
+            package::fab(&load::spec(&asked.file, puzzle, watch)?.joined()?, asked, &args.common)
         }
         Some(Verb::Processes { name }) => package::processes(name.as_deref()),
-        Some(Verb::Export(asked)) => exported::export(&load::spec(&asked.file, puzzle)?.joined()?, asked),
-        Some(Verb::Draw(asked)) => draw::draw(&load::spec(&asked.file, puzzle)?.joined()?, asked),
+        Some(Verb::Export(asked)) => {
+            exported::export(&load::spec(&asked.file, puzzle, watch)?.joined()?, asked)
+        }
+        Some(Verb::Draw(asked)) => draw::draw(&load::spec(&asked.file, puzzle, watch)?.joined()?, asked),
         Some(Verb::Verify { answer }) => questions::verify(answer),
         Some(Verb::Atlas(asked)) => atlas::atlas(asked, &args.common),
-        Some(Verb::Report { file, out, mold }) => run::report(file, out, mold.as_deref(), &args.common),
+        Some(Verb::Report { file, out, mold }) => {
+            run::report(file, out, mold.as_deref(), &args.common, watch)
+        }
         Some(Verb::New(asked)) => new::new(asked),
         Some(Verb::Completions { shell }) => shell::completions(*shell),
         Some(Verb::Man) => shell::man(),
@@ -126,7 +148,7 @@ pub fn answered(words: &[String]) -> Result<Answered, String> {
     let all =
         std::iter::once("weavelock").chain(words.iter().map(String::as_str)).chain(["--json", "--quiet"]);
     let args = <Args as clap::Parser>::try_parse_from(all).map_err(|e| e.render().to_string())?;
-    let told = guarded(|| dispatch(&args)).map_err(|trouble| trouble.to_string())?;
+    let told = guarded(|| dispatch(&args, &Watch::default())).map_err(|trouble| trouble.to_string())?;
     let code = match told.news {
         News::Good => 0,
         News::Other => 1,
@@ -136,7 +158,7 @@ pub fn answered(words: &[String]) -> Result<Answered, String> {
 
 /// The assembly of a spec or puzzle file, with its contacts.
 pub fn joined(file: &std::path::Path) -> Result<crate::contact::Joined, String> {
-    let placed = guarded(|| Ok(load::spec(file, &args::PuzzleArgs::default())?.joined()?));
+    let placed = guarded(|| Ok(load::spec(file, &args::PuzzleArgs::default(), &Watch::default())?.joined()?));
     placed.map(|p| p.joined).map_err(|trouble| trouble.to_string())
 }
 

@@ -12,6 +12,7 @@ use crate::report::answer::{self, AxisPlay, Followed, PlayAnswer, PlayWord};
 use crate::report::content::{Chapter, Column, Table, Tone};
 use crate::sequence::clearance::with_clearance;
 use crate::verify::follow::followed;
+use crate::watch::{All, Watch};
 use clap::Args;
 use rayon::prelude::*;
 use std::path::PathBuf;
@@ -27,8 +28,8 @@ pub struct Asked {
     pub of: Vec<String>,
 }
 
-pub fn play(asked: &Asked, puzzle: &PuzzleArgs) -> Result<Told, Trouble> {
-    let placed = load::spec(&asked.file, puzzle)?.joined()?;
+pub fn play(asked: &Asked, puzzle: &PuzzleArgs, watch: &Watch) -> Result<Told, Trouble> {
+    let placed = load::spec(&asked.file, puzzle, watch)?.joined()?;
     if asked.clearance <= 0.0 {
         let hint = "give the air that the parts are made with, as --clearance \"0.2 mm\"".to_string();
         return Err(argument(format!("{} mm of air leave no play", asked.clearance), hint).into());
@@ -44,10 +45,12 @@ pub fn played(placed: &Placed, of: &[PartIx], clearance_mm: f64) -> Result<PlayA
     let still = if held.is_empty() { vec![PartIx(0)] } else { held };
     let all: Vec<PartIx> = asm.ids().collect();
     let of = if of.is_empty() { &all[..] } else { of };
-    let found = play::play(asm, &placed.joined.patches, of, &still).map_err(|why| {
-        argument(format!("not searched: {why}"), "name some parts: --of weft-0,warp-1".into())
-    })?;
+    let found =
+        play::play_watched(asm, &placed.joined.patches, of, &still, &placed.watch).map_err(|why| {
+            argument(format!("not searched: {why}"), "name some parts: --of weft-0,warp-1".into())
+        })?;
     let found = follow(placed, found, clearance_mm);
+    let stopped = placed.watch.is_stopped().then(|| stopped(&found));
     Ok(PlayAnswer {
         verb: "play".into(),
         name: asm.name.clone(),
@@ -56,9 +59,16 @@ pub fn played(placed: &Placed, of: &[PartIx], clearance_mm: f64) -> Result<PlayA
         fit_mm: 2.0 * clearance_mm,
         still: answer::ids(asm, &still),
         parts: answer::play(asm, &found, clearance_mm),
-        remarks: placed.joined.remarks.clone(),
+        stopped: stopped.is_some(),
+        remarks: placed.joined.remarks.iter().cloned().chain(stopped).collect(),
         source: placed.source.clone(),
     })
+}
+
+/// What to say where the user stopped it.
+fn stopped(found: &[Followed]) -> String {
+    let solved = found.iter().filter(|f| !matches!(f.extreme.reach, Reach::Unsolved { .. })).count();
+    format!("stopped by the user after {solved} of {} programs", found.len())
 }
 
 /// How far the solids as made follow each extreme; nothing where there are no such solids.
@@ -72,7 +82,12 @@ fn follow(placed: &Placed, found: Vec<Extreme>, clearance_mm: f64) -> Vec<Follow
         Reach::Held { twists, .. } => followed(&made, twists, 2.0 * clearance),
         Reach::Endless { .. } | Reach::Unsolved { .. } => None,
     };
-    let followed = |extreme: Extreme| Followed { share: share(&extreme), extreme };
+    let stage = placed.watch.stage("following them", "motions", All::Just(found.len() as u64));
+    let followed = |extreme: Extreme| {
+        let share = if placed.watch.is_stopped() { None } else { share(&extreme) };
+        stage.add(1);
+        Followed { share, extreme }
+    };
     found.into_par_iter().map(followed).collect()
 }
 

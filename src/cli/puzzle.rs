@@ -7,16 +7,18 @@
 use super::args::PuzzleArgs;
 use super::load::{Loaded, Placed};
 use super::questions::locked;
+use super::told::Trouble;
 use crate::assembly::PartIx;
 use crate::assembly::voxel;
-use crate::assembly::voxel::cover::{Covered, assemblies};
-use crate::fault::{Fault, Faults};
-use crate::report::answer::{Certificate, Source};
+use crate::assembly::voxel::cover::{Covered, assemblies_watched};
+use crate::fault::Fault;
+use crate::report::answer::Certificate;
 use crate::sequence::lattice::answer::Asked;
-use crate::sequence::lattice::{self, NoLattice, apart::written, on_lattice};
+use crate::sequence::lattice::{self, NoLattice, apart::written, on_lattice_watched};
 use crate::sequence::{Outcome, Plan};
+use crate::spec::Subject;
 use crate::spec::puzzle::{self, Choice, Puzzle, Solution, text::text};
-use crate::spec::{Spec, Subject};
+use crate::watch::{All, Watch};
 use std::ops::ControlFlow;
 use std::path::Path;
 
@@ -30,37 +32,32 @@ const MOST_TRIED: usize = 2_000;
 const MOST_STATES: usize = 1_000_000;
 
 /// A puzzle file as asked.
-pub fn loaded(file: &Path, asked: &PuzzleArgs) -> Result<Loaded, Faults> {
+pub fn loaded(file: &Path, asked: &PuzzleArgs, watch: &Watch) -> Result<Loaded, Trouble> {
     let choice = Choice { problem: asked.problem, solution: asked.solution, unit_mm: asked.unit };
     let mut spec = puzzle::parse(&puzzle::read_text(file)?, file, choice)?;
     let (name, shown) = (spec.name.clone(), file.display().to_string());
-    let Subject::Meshes(meshes) = &mut spec.subject else { return Ok(Loaded::bare(spec, String::new())) };
+    let Subject::Meshes(meshes) = &mut spec.subject else {
+        return Ok(Loaded::new(spec, String::new(), watch));
+    };
     let unit_mm = meshes.mm_per_unit;
     let mut remarks = Vec::new();
     if let Some(puzzle) = &mut meshes.puzzle {
         if puzzle.solution.is_none() {
-            let (solution, how) = found(&name, puzzle).map_err(|(what, hint)| Fault {
-                file: shown,
-                place: None,
-                key: String::new(),
-                what,
-                hint,
-            })?;
+            let wrong = |(what, hint)| Fault { file: shown, place: None, key: String::new(), what, hint };
+            let (solution, how) = match found(&name, puzzle, watch) {
+                Err(_) if watch.is_stopped() => {
+                    return Err(Trouble::Stopped("while a way to fill the result was searched".into()));
+                }
+                found => found.map_err(wrong)?,
+            };
             puzzle.solution = Some(solution);
             remarks.push(how);
         }
         remarks.extend(told(puzzle, unit_mm, asked));
         let text = text(puzzle, unit_mm);
-        return Ok(Loaded { remarks, ..Loaded::bare(spec, text) });
+        return Ok(Loaded { remarks, ..Loaded::new(spec, text, watch) });
     }
-    Ok(Loaded::bare(spec, String::new()))
-}
-
-impl Loaded {
-    fn bare(spec: Spec, text: String) -> Loaded {
-        let source = Source { file: spec.file.display().to_string(), text };
-        Loaded { spec, source, remarks: Vec::new() }
-    }
+    Ok(Loaded::new(spec, String::new(), watch))
 }
 
 /// What was taken where nothing was said.
@@ -81,12 +78,14 @@ fn told(puzzle: &Puzzle, unit_mm: f64, asked: &PuzzleArgs) -> Vec<String> {
 }
 
 /// A way to fill the result, and in words how it was found; or a fault and its hint.
-fn found(name: &str, puzzle: &Puzzle) -> Result<(Solution, String), (String, String)> {
+fn found(name: &str, puzzle: &Puzzle, watch: &Watch) -> Result<(Solution, String), (String, String)> {
     let wanted = puzzle.chosen.0.max(1);
     let (mut first, mut good, mut tried, mut apart) = (None, None, 0, 0);
-    let end = assemblies(puzzle, MOST_WORK, |solution| {
+    let stage = watch.stage("filling the result", "ways tried", All::AtMost(MOST_TRIED as u64));
+    let end = assemblies_watched(puzzle, MOST_WORK, watch, |solution| {
         tried += 1;
-        if comes_apart(name, puzzle, &solution) {
+        stage.reach(tried);
+        if comes_apart(name, puzzle, &solution, watch) {
             apart += 1;
             if apart == wanted {
                 good = Some(solution);
@@ -95,7 +94,11 @@ fn found(name: &str, puzzle: &Puzzle) -> Result<(Solution, String), (String, Str
         } else if first.is_none() {
             first = Some(solution);
         }
-        if tried < MOST_TRIED { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
+        if tried < MOST_TRIED && !watch.is_stopped() {
+            ControlFlow::Continue(())
+        } else {
+            ControlFlow::Break(())
+        }
     });
     if let Some(solution) = good {
         return Ok((
@@ -105,7 +108,11 @@ fn found(name: &str, puzzle: &Puzzle) -> Result<(Solution, String), (String, Str
             ),
         ));
     }
-    let all = if end == Covered::All { "all" } else { "the first" };
+    let all = match end {
+        Covered::All => "all",
+        _ if watch.is_stopped() => "those until the user stopped it,",
+        _ => "the first",
+    };
     match first {
         Some(solution) if wanted == 1 => Ok((
             solution,
@@ -126,10 +133,10 @@ fn found(name: &str, puzzle: &Puzzle) -> Result<(Solution, String), (String, Str
     }
 }
 
-fn comes_apart(name: &str, puzzle: &Puzzle, solution: &Solution) -> bool {
+fn comes_apart(name: &str, puzzle: &Puzzle, solution: &Solution, watch: &Watch) -> bool {
     let Ok(asm) = voxel::assembly(name, puzzle, solution, 1.0) else { return false };
     let all: Vec<_> = asm.ids().collect();
-    let found = on_lattice(&asm, &all, Some(1.0), |_| 1, Some(MOST_STATES));
+    let found = on_lattice_watched(&asm, &all, Some(1.0), |_| 1, Some(MOST_STATES), watch);
     found.is_ok_and(|f| f.apart.whole.kept().is_empty())
 }
 
@@ -147,13 +154,14 @@ pub fn plan(
     let is_whole = |plan: &Plan<Certificate>| plan.outcome == Outcome::Assembled;
     if puzzle_of(placed).is_some() && clearance_mm == 0.0 {
         return match on_its_lattice(placed, of, None) {
-            Ok(plan) if is_whole(&plan) => Ok(plan),
+            Ok(plan) if is_whole(&plan) || plan.stopped => Ok(plan),
             Ok(plan) => Ok(straight().ok().filter(is_whole).unwrap_or(plan)),
             Err(_) => straight(),
         };
     }
     match straight() {
         Ok(plan) if is_whole(&plan) => Ok(plan),
+        Ok(plan) if plan.stopped => Ok(plan),
         found => match on_its_lattice(placed, of, Some(MOST_STATES)) {
             Ok(plan) if clearance_mm == 0.0 => Ok(plan),
             // With air between them the parts can do all that they can do without; fewer moves may do.
@@ -183,6 +191,7 @@ fn on_its_lattice(
         step: weights.is_some().then_some(1.0),
         weight: |p: PartIx| weights.as_ref().and_then(|w| w.get(p.at()).copied()).unwrap_or(1),
         most,
+        watch: &placed.watch,
     };
     lattice::answer::plan(&asked, |set| locked(joined, set))
 }

@@ -3,6 +3,7 @@
 //! Not promised: anything beyond what the stage that answers promises.
 
 use super::load::{self, Placed};
+use super::preferred;
 use super::puzzle;
 use super::told::{News, Told, Trouble};
 use super::words;
@@ -41,26 +42,40 @@ pub fn planned(placed: &Placed, of: &[PartIx], clearance_mm: f64) -> PlanAnswer 
 
 /// The same by these motions.
 pub fn planned_by(placed: &Placed, of: &[PartIx], clearance_mm: f64, motions: Motions) -> PlanAnswer {
-    let joined = &placed.joined;
+    let (joined, watch) = (&placed.joined, &placed.watch);
     let (asm, patches) = (&joined.assembly, &joined.patches);
     let found = puzzle::plan(placed, of, clearance_mm, || {
         if clearance_mm > 0.0 {
             let made =
                 with_clearance(asm, patches, clearance_mm / asm.mm_per_unit).map_err(|e| e.to_string())?;
-            sequence::plan_by(&made, of, &[], motions, |_| None).map_err(|e| e.to_string())
+            sequence::plan_watched(&made, of, &[], motions, watch, |_| None).map_err(|e| e.to_string())
         } else {
-            sequence::plan_by(asm, of, patches, motions, |set| locked(joined, set)).map_err(|e| e.to_string())
+            sequence::plan_watched(asm, of, patches, motions, watch, |set| locked(joined, set))
+                .map_err(|e| e.to_string())
         }
     });
     let (plan, why) = found.map_or_else(|why| (nothing(), Some(why)), |plan| (plan, None));
-    let remarks = why.map(|why| format!("no plan was searched: {why}"));
+    let stopped = plan.stopped.then(|| stopped(&plan));
+    let remarks = stopped.or(why.map(|why| format!("no plan was searched: {why}")));
     let remarks = remarks.or_else(|| doubtful(joined, &plan).filter(|_| clearance_mm == 0.0));
     answer::plan(joined, plan, of, clearance_mm, remarks, placed.source.clone())
 }
 
+/// What to say of a search that the user stopped: counted, since a time would say nothing on another machine.
+fn stopped(plan: &Plan<Certificate>) -> String {
+    let s = plan.searched;
+    let after = match &plan.counted {
+        Some(c) => format!("{} positions", c.positions),
+        None => format!("{} directions in {} sets and {} poses", s.directions, s.sets, s.states),
+    };
+    format!(
+        "stopped by the user after {after}: what is told is what was found until then, and proves nothing of the rest"
+    )
+}
+
 /// What to say of sets that stayed together and are locked as written, but not shown to be within the files' digits.
 fn doubtful(joined: &Joined, plan: &Plan<Certificate>) -> Option<String> {
-    if joined.slack.is_empty() {
+    if joined.slack.is_empty() || plan.stopped {
         return None;
     }
     let contacts = Contacts::new(joined.touching());
@@ -93,6 +108,7 @@ fn nothing() -> Plan<Certificate> {
         searched: Searched::default(),
         touch: 0.0,
         counted: None,
+        stopped: false,
     }
 }
 
@@ -105,7 +121,12 @@ pub fn locked(joined: &Joined, set: &[PartIx]) -> Option<Certificate> {
     Some(answer::certificate(&joined.assembly, &still, &core.stress))
 }
 
-pub fn plan(placed: &Placed, of: &[String], clearance_mm: f64) -> Result<Told, Trouble> {
+pub fn plan(
+    placed: &Placed,
+    of: &[String],
+    clearance_mm: f64,
+    wanted: &preferred::Asked,
+) -> Result<Told, Trouble> {
     let joined = &placed.joined;
     let mut parts = of.iter().map(|id| part(joined, id.trim())).collect::<Result<Vec<_>, _>>()?;
     if parts.is_empty() {
@@ -113,7 +134,7 @@ pub fn plan(placed: &Placed, of: &[String], clearance_mm: f64) -> Result<Told, T
     }
     parts.sort_unstable();
     parts.dedup();
-    Ok(told_plan(placed, &planned(placed, &parts, clearance_mm)))
+    Ok(told_plan(placed, &preferred::applied(placed, planned(placed, &parts, clearance_mm), wanted)?))
 }
 
 pub fn told_plan(placed: &Placed, answer: &PlanAnswer) -> Told {
@@ -122,6 +143,7 @@ pub fn told_plan(placed: &Placed, answer: &PlanAnswer) -> Told {
     chapter
         .facts
         .insert(0, ("clearance".into(), format!("{} mm on each face of a contact", answer.clearance_mm)));
+    answer.preferences.iter().for_each(|p| preferred::tell(&mut chapter, p));
     Told {
         remarks: answer.remarks.clone(),
         ..Told::new(news, answer, &answer.name, "How it goes together", chapter)

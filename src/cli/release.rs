@@ -16,6 +16,7 @@ use crate::report::content::{Chapter, Column, Table, Tone};
 use crate::sequence::clearance::with_clearance;
 use crate::sequence::{Motions, Outcome};
 use crate::verify;
+use crate::watch::{All, Watch};
 use clap::Args;
 use std::path::PathBuf;
 use weavelock_fab::process::Process;
@@ -28,8 +29,8 @@ pub struct Asked {
     pub process: Option<String>,
 }
 
-pub fn release(asked: &Asked, puzzle: &PuzzleArgs) -> Result<Told, Trouble> {
-    let placed = load::spec(&asked.file, puzzle)?.joined()?;
+pub fn release(asked: &Asked, puzzle: &PuzzleArgs, watch: &Watch) -> Result<Told, Trouble> {
+    let placed = load::spec(&asked.file, puzzle, watch)?.joined()?;
     let wrong = |e: weavelock_fab::process::ProcessError| Trouble::Word(format!("error: {e}"));
     let process = asked.process.as_deref().map(Process::find).transpose().map_err(wrong)?;
     let process = process.map(|p| (p.name, p.clearance.value));
@@ -51,6 +52,8 @@ pub fn released(placed: &Placed, process: Option<(String, f64)>) -> ReleaseAnswe
             .to_vec(),
     };
     let best = brackets.iter().filter_map(|b| b.hi).map(|h| h.clearance_mm).fold(f64::INFINITY, f64::min);
+    let tried: usize = brackets.iter().map(|b| b.tried.iter().filter(|t| t.1 != "stopped").count()).sum();
+    let stopped = placed.watch.is_stopped().then(|| format!("stopped by the user after {tried} clearances"));
     let answer = ReleaseAnswer {
         verb: "release".into(),
         name: joined.assembly.name.clone(),
@@ -62,7 +65,8 @@ pub fn released(placed: &Placed, process: Option<(String, f64)>) -> ReleaseAnswe
         certificate: zero,
         process: process.map(|(name, mm)| at_process(&brackets, name, mm)),
         brackets,
-        remarks: joined.remarks.clone(),
+        stopped: stopped.is_some(),
+        remarks: joined.remarks.iter().cloned().chain(stopped).collect(),
         source: placed.source.clone(),
         checksum: String::new(),
     };
@@ -77,11 +81,23 @@ const MOTIONS: [(Motions, &str); 2] = [
 
 fn searched(placed: &Placed, all: &[PartIx], motions: Motions) -> crate::release::Bracket<PlanAnswer> {
     let (asm, patches) = (&placed.joined.assembly, &placed.joined.patches);
+    let stage = placed.watch.stage("clearances", "", All::Open);
+    let tried = std::cell::Cell::new(0);
     bracket(range(asm), |clearance| {
+        tried.set(tried.get() + 1);
+        stage.reach(tried.get());
+        let mm = clearance * asm.mm_per_unit;
+        let _stage = placed.watch.stage(format!("the {}., {mm:.3} mm", tried.get()), "", All::Open);
+        if placed.watch.is_stopped() {
+            return At::Stopped;
+        }
         if let Err(why) = with_clearance(asm, patches, clearance) {
             return At::Gone(why.to_string());
         }
-        let plan = planned_by(placed, all, clearance * asm.mm_per_unit, motions);
+        let plan = planned_by(placed, all, mm, motions);
+        if plan.plan.stopped {
+            return At::Stopped;
+        }
         if plan.plan.outcome != Outcome::Assembled {
             return At::NotFound(left(&plan));
         }

@@ -12,11 +12,12 @@ use crate::contact;
 use crate::fault::{Fault, Faults};
 use crate::locking;
 use crate::repeats::grow::{self, Class, Sizes};
-use crate::repeats::{AsMade, FILE, Search, Tried, repeats_made, round, text};
+use crate::repeats::{AsMade, FILE, Search, Tried, repeats_watched, round, text};
 use crate::report::answer::repeats::{Case, repeats as written};
 use crate::report::answer::{self, RepeatsAnswer, Source};
 use crate::report::file::write_whole;
 use crate::spec::{self, Bounds, ProfileSpec, Shape, Subject, Syntax};
+use crate::watch::{All, Watch};
 use crate::weave::Weave;
 use clap::{Args, ValueEnum};
 use std::path::{Path, PathBuf};
@@ -78,18 +79,22 @@ struct Query {
     search: Search,
 }
 
-pub fn repeats(asked: &Asked) -> Result<Told, Trouble> {
+pub fn repeats(asked: &Asked, watch: &Watch) -> Result<Told, Trouble> {
     let (weave, base, pitch_mm) = subject(&asked.weave)?;
     let made =
         AsMade { clearance_mm: asked.clearance.unwrap_or(0.0), pitch_mm: asked.pitch.unwrap_or(pitch_mm) };
     let queries = queries(asked, &weave, &base)?;
-    let found = searched(&weave, &queries, made, asked.most)?;
+    let found = searched(&weave, &queries, made, asked.most, watch)?;
     let cases: Vec<Case> =
         queries.iter().zip(&found).map(|(q, tried)| Case { profile: &q.profile, tried }).collect();
     let remarks = || load::falls_apart(&weave).into_iter().collect::<Vec<_>>();
+    if watch.is_stopped() {
+        return Ok(told(&stopped(written(&asked.weave, &cases, (&base, &[]), made, remarks()))));
+    }
     let name = asked.weave.as_str();
     let mut answer = written(name, &cases, (&base, &[]), made, remarks());
     if let (Some(every), Some(k), Some(q)) = (asked.every_size, answer.minimal_repeat, queries.first()) {
+        let _stage = watch.stage("every size", "", All::Open);
         let classes = classes(&weave, q, k, every)?;
         answer = written(name, &cases, (&q.profile, &classes), made, remarks());
     }
@@ -99,11 +104,21 @@ pub fn repeats(asked: &Asked) -> Result<Told, Trouble> {
     Ok(told(&answer))
 }
 
+/// The answer of a search that the user stopped: what was tried stands, a least k is not told.
+fn stopped(mut answer: RepeatsAnswer) -> RepeatsAnswer {
+    let tried = answer.table.len();
+    answer.remarks.push(format!(
+        "stopped by the user after {tried} swatches: a least k of all that was asked is not told"
+    ));
+    (answer.stopped, answer.minimal_repeat, answer.checksum) = (true, None, String::new());
+    RepeatsAnswer { checksum: answer::checksum(&answer), ..answer }
+}
+
 /// The weave with the profile and pitch to start from.
 fn subject(name: &str) -> Result<(Weave, ProfileSpec, f64), Trouble> {
     let path = Path::new(name);
     if load::is_spec(path) {
-        return match load::spec(path, &PuzzleArgs::default())?.spec.subject {
+        return match load::spec(path, &PuzzleArgs::default(), &Watch::default())?.spec.subject {
             Subject::Woven(w) => Ok((w.weave, w.profile, w.pitch_mm)),
             Subject::Meshes(_) => Err(argument(
                 "an assembly of meshes has no weave to repeat".into(),
@@ -118,17 +133,30 @@ fn subject(name: &str) -> Result<(Weave, ProfileSpec, f64), Trouble> {
 }
 
 /// Every case up to its own least k, then all at the largest of these.
-fn searched(weave: &Weave, queries: &[Query], made: AsMade, most: u32) -> Result<Vec<Vec<Tried>>, Faults> {
+fn searched(
+    weave: &Weave,
+    queries: &[Query],
+    made: AsMade,
+    most: u32,
+    watch: &Watch,
+) -> Result<Vec<Vec<Tried>>, Faults> {
+    let stage = watch.stage(
+        "profiles and sizes",
+        if queries.len() > 1 { "cases" } else { "" },
+        All::Just(queries.len() as u64),
+    );
     let mut found = Vec::new();
     for q in queries {
         let search = Search { most, ..q.search.clone() };
-        found.push(repeats_made(weave, &q.profile, &search, made)?);
+        found.push(repeats_watched(weave, &q.profile, &search, made, watch)?);
+        stage.add(1);
     }
     let all: Option<Vec<u32>> = found.iter().map(|f| f.least).collect();
     let k = all.and_then(|a| a.into_iter().max());
     for (q, f) in queries.iter().zip(&mut found) {
         for more in f.least.unwrap_or(most) + 1..=k.unwrap_or(0) {
-            f.tried.extend(round(weave, &q.profile, &q.search, made, more)?);
+            let row = round(weave, &q.profile, &q.search, (made, more), (watch, &stage))?;
+            f.tried.extend(row.into_iter().flatten());
         }
     }
     Ok(found.into_iter().map(|f| f.tried).collect())
@@ -149,8 +177,9 @@ pub fn repeated(
     name: &str,
     profile: &ProfileSpec,
     search: &Search,
+    watch: &Watch,
 ) -> Result<RepeatsAnswer, Trouble> {
-    let found = repeats_made(weave, profile, search, AsMade::TOUCHING)?;
+    let found = repeats_watched(weave, profile, search, AsMade::TOUCHING, watch)?;
     let cases = [Case { profile, tried: &found.tried }];
     let remarks = load::falls_apart(weave).into_iter().collect();
     Ok(written(name, &cases, (profile, &[]), AsMade::TOUCHING, remarks))

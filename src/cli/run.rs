@@ -24,23 +24,30 @@ use crate::report::file::write_whole;
 use crate::report::page::{PageInput, page};
 use crate::report::viewer::Answers;
 use crate::spec::{Cut, Layout, Subject};
+use crate::watch::{All, Watch};
 use crate::weave::{Origin, Weave};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 use weavelock_fab::process::Route;
 use weavelock_fab::report::Report;
 
-pub fn example(common: &Common) -> Result<Told, Trouble> {
-    everything(load::example()?, Path::new("out"), common)
+pub fn example(common: &Common, watch: &Watch) -> Result<Told, Trouble> {
+    everything(load::example(watch)?, Path::new("out"), common)
 }
 
-pub fn file(file: &Path, out: &Path, common: &Common) -> Result<Told, Trouble> {
-    everything(load::spec(file, &common.puzzle)?, out, common)
+pub fn file(file: &Path, out: &Path, common: &Common, watch: &Watch) -> Result<Told, Trouble> {
+    everything(load::spec(file, &common.puzzle, watch)?, out, common)
 }
 
 /// The page alone, without making parts; with the mold of one part where that is asked for.
-pub fn report(file: &Path, out: &Path, mold: Option<&str>, common: &Common) -> Result<Told, Trouble> {
-    let placed = load::spec(file, &common.puzzle)?.joined()?;
+pub fn report(
+    file: &Path,
+    out: &Path,
+    mold: Option<&str>,
+    common: &Common,
+    watch: &Watch,
+) -> Result<Told, Trouble> {
+    let placed = load::spec(file, &common.puzzle, watch)?.joined()?;
     let part = mold.map(|id| questions::part(&placed.joined, id)).transpose()?;
     let asked = ask(&placed, common)?;
     let none = || Answer::not_run("`weavelock fab` makes the parts");
@@ -85,14 +92,16 @@ const MOST_REPEATS: u32 = 4;
 fn ask(placed: &Placed, common: &Common) -> Result<Asked, Trouble> {
     let progress = |what: &str| {
         if !common.quiet {
-            eprintln!("{what} ...");
+            super::watch::say(&format!("{what} ..."));
         }
     };
     let asm = &placed.joined.assembly;
     progress("is it locked");
+    let stage = placed.watch.stage("is it locked", "", All::Open);
     let check = placed.check();
     let pictures = pictures(placed, &check)?;
     let check = check::told(placed, &check, None);
+    drop(stage);
     progress("how does it go together");
     let all: Vec<PartIx> = asm.ids().collect();
     let plan = questions::told_plan(placed, &questions::planned(placed, &all, 0.0));
@@ -122,7 +131,8 @@ fn woven(placed: &Placed, progress: &impl Fn(&str)) -> Result<Woven, Trouble> {
     };
     let n = woven.weave.tile;
     let search = Search { wefts: n.1, warps: n.0, phases: vec![phase], most: MOST_REPEATS };
-    let repeats = repeats::repeated(&woven.weave, &name(&woven.weave), &woven.profile, &search);
+    let repeats =
+        repeats::repeated(&woven.weave, &name(&woven.weave), &woven.profile, &search, &placed.watch);
     let repeats = repeats.map(|a| repeats::told(&a)).map_err(|t| t.to_string());
     let chirality = hands::told_chirality(placed).map_err(|t| t.to_string());
     Ok((Some(weave), repeats, chirality))
@@ -160,11 +170,13 @@ fn everything(loaded: Loaded, out: &Path, common: &Common) -> Result<Told, Troub
     let placed = loaded.joined()?;
     let asked = ask(&placed, common)?;
     if !common.quiet {
-        eprintln!("making the parts ...");
+        super::watch::say("making the parts ...");
     }
+    let stage = placed.watch.stage("making the parts", "", All::Open);
     let folder = out.join("parts");
     let made = make::made(&placed, &folder)?;
     let fab = make::told_fab(&made, &folder);
+    drop(stage);
     let cast = packaged(&placed, &made, &out.join("package"), common)?;
     let mut files = vec![folder.display().to_string()];
     files.extend(cast.iter().map(|_| out.join("package").display().to_string()));
@@ -198,7 +210,7 @@ fn packaged(placed: &Placed, made: &Report, out: &Path, common: &Common) -> Resu
         return Ok(None);
     }
     if !common.quiet {
-        eprintln!("making the molds ...");
+        super::watch::say("making the molds ...");
     }
     package::of_run(placed, out).map(Some)
 }

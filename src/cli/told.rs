@@ -69,6 +69,8 @@ impl Told {
 pub enum Trouble {
     Faults(Faults),
     Word(String),
+    /// The user ended it before there was anything to tell.
+    Stopped(String),
 }
 
 impl Trouble {
@@ -87,6 +89,7 @@ impl fmt::Display for Trouble {
         match self {
             Trouble::Faults(faults) => write!(f, "error: {faults}"),
             Trouble::Word(word) => write!(f, "{word}"),
+            Trouble::Stopped(when) => write!(f, "stopped by the user {when}; there is no answer"),
         }
     }
 }

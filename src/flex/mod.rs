@@ -16,6 +16,7 @@ use crate::contact::Touching;
 use crate::cores::{Core, Set};
 use crate::sequence::clearance::NoClearance;
 use crate::sequence::{Fault, Plan};
+use crate::watch::Watch;
 use std::time::Instant;
 use symmetry::Symmetry;
 
@@ -90,6 +91,8 @@ pub enum Listing {
 pub enum Cut {
     Work,
     Time,
+    /// The user stopped it.
+    Stopped,
     /// More candidates than are listed.
     Many,
 }
@@ -111,5 +114,10 @@ pub enum NoFlex {
 
 /// Finds locked cores until a smallest set that meets them all is enough (implicit hitting set), then all such sets.
 pub fn flex(touching: Touching, ask: &Ask) -> Result<Flex, NoFlex> {
-    search::Search::new(touching, ask)?.run()
+    flex_watched(touching, ask, &Watch::default())
+}
+
+/// The same, watched: a stop is as if the work were spent, but that no set is enough for want of a plan then made.
+pub fn flex_watched(touching: Touching, ask: &Ask, watch: &Watch) -> Result<Flex, NoFlex> {
+    search::Search::new(touching, ask, watch)?.run()
 }

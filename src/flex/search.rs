@@ -10,7 +10,8 @@ use crate::assembly::{Assembly, PartIx};
 use crate::contact::{Patch, Touching};
 use crate::cores::{self, Contacts, Core, Firm, Guard, Set};
 use crate::sequence::clearance::with_clearance;
-use crate::sequence::{self, Plan, lattice};
+use crate::sequence::{self, Motions, Plan, lattice};
+use crate::watch::{All, Stage, Watch};
 use std::collections::{BTreeMap, BTreeSet};
 use std::time::Instant;
 
@@ -28,6 +29,8 @@ pub struct Search<'a> {
     /// The parts that plans are about: as they touch, or as made.
     planned: Assembly,
     ask: &'a Ask,
+    watch: &'a Watch,
+    stage: Stage,
     symmetries: Vec<Symmetry>,
     cores: BTreeMap<Set, Core>,
     unproven: BTreeSet<Set>,
@@ -45,7 +48,7 @@ enum Judged {
 }
 
 impl<'a> Search<'a> {
-    pub fn new(touching: Touching<'a>, ask: &'a Ask) -> Result<Search<'a>, NoFlex> {
+    pub fn new(touching: Touching<'a>, ask: &'a Ask, watch: &'a Watch) -> Result<Search<'a>, NoFlex> {
         let asm = touching.assembly;
         let planned = with_clearance(asm, touching.patches, ask.clearance)?;
         let planned = if ask.clearance > 0.0 { planned } else { asm.clone() };
@@ -53,6 +56,8 @@ impl<'a> Search<'a> {
             contacts: Contacts::new(touching),
             planned,
             ask,
+            watch,
+            stage: watch.stage("locks and plans", "units of work", All::AtMost(ask.work)),
             symmetries: symmetries(asm, ask.within),
             cores: BTreeMap::new(),
             unproven: BTreeSet::new(),
@@ -123,7 +128,7 @@ impl<'a> Search<'a> {
     fn any(&mut self, mut flexible: Set) -> Result<usize, NoFlex> {
         loop {
             let rest = self.rest(&flexible);
-            let plan = self.taken_apart(&rest)?;
+            let plan = self.made(&rest)?;
             if plan.stuck.is_empty() {
                 let size = flexible.len();
                 self.keep(flexible, plan);
@@ -154,7 +159,9 @@ impl<'a> Search<'a> {
     }
 
     fn spent(&self) -> Option<Cut> {
+        self.stage.reach(self.contacts.work() as usize);
         match self.ask.until {
+            _ if self.watch.is_stopped() => Some(Cut::Stopped),
             _ if self.contacts.work() >= self.ask.work => Some(Cut::Work),
             Some(end) if Instant::now() >= end => Some(Cut::Time),
             _ => None,
@@ -174,6 +181,10 @@ impl<'a> Search<'a> {
         if plan.stuck.is_empty() {
             return Ok(Judged::Enough(Box::new(plan)));
         }
+        // What stayed together when it was stopped says nothing.
+        if plan.stopped {
+            return Ok(Judged::Cut(Cut::Stopped));
+        }
         for stuck in &plan.stuck {
             let stuck = self.least_stuck(self.named(&stuck.parts))?;
             let images: Vec<Set> = self.images(&stuck);
@@ -185,12 +196,14 @@ impl<'a> Search<'a> {
     fn plan(&mut self, parts: &[PartIx]) -> Result<Plan<()>, NoFlex> {
         let set: Set = parts.iter().copied().collect();
         self.contacts.pay(set.len(), self.contacts.patches_among(&set));
-        self.taken_apart(parts)
+        self.made(parts)
     }
 
     /// By straight moves, or else on the parts' lattice, if they have one.
-    fn taken_apart(&self, parts: &[PartIx]) -> Result<Plan<()>, NoFlex> {
-        let straight = sequence::plan_of(&self.planned, parts, self.patches(), |_| None)?;
+    fn made(&self, parts: &[PartIx]) -> Result<Plan<()>, NoFlex> {
+        let (asm, watch) = (&self.planned, self.watch.unseen());
+        let straight =
+            sequence::plan_watched(asm, parts, self.patches(), Motions::Straight, &watch, |_| None)?;
         if straight.stuck.is_empty() {
             return Ok(straight);
         }
@@ -201,6 +214,7 @@ impl<'a> Search<'a> {
             step: None,
             weight: |_| 1,
             most: Some(MOST_POSITIONS),
+            watch: &watch,
         };
         let found = lattice::answer::plan(&asked, |_| None);
         let positions = found.as_ref().ok().and_then(|p| p.counted.as_ref()).map_or(0, |c| c.positions);
@@ -217,7 +231,7 @@ impl<'a> Search<'a> {
         let mut found = false;
         loop {
             let largest = cores::largest(&self.contacts, &within, Guard::Without).largest;
-            if largest.is_empty() {
+            if largest.is_empty() || self.watch.is_stopped() {
                 return found;
             }
             for large in largest {
@@ -265,7 +279,7 @@ impl<'a> Search<'a> {
             let less: Vec<PartIx> = stuck.iter().copied().filter(|&p| p != part).collect();
             if self.spent().is_none() && less.len() > 1 {
                 let plan = self.plan(&less)?;
-                if let Some(s) = plan.stuck.first() {
+                if let Some(s) = plan.stuck.first().filter(|_| !plan.stopped) {
                     stuck = self.named(&s.parts);
                 }
             }

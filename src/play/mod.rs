@@ -10,6 +10,7 @@ mod program;
 use crate::assembly::{Assembly, PartIx};
 use crate::contact::Patch;
 use crate::locking::{Freedom, Row, Twist, Unknowns, rows};
+use crate::watch::{All, Stage, Watch};
 use glam::DVec3;
 use program::{Farthest, Program};
 use rayon::prelude::*;
@@ -53,6 +54,9 @@ pub enum Reach {
 /// so some minutes.
 pub const MOST_WORK: usize = 30_000_000;
 
+/// Why a program is not solved that was not begun.
+pub const STOPPED: &str = "stopped by the user";
+
 /// Why play was not looked for.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Fault {
@@ -67,6 +71,17 @@ pub fn play(
     of: &[PartIx],
     still: &[PartIx],
 ) -> Result<Vec<Extreme>, Fault> {
+    play_watched(assembly, patches, of, still, &Watch::default())
+}
+
+/// The same, watched: what is not solved when it is stopped stays so.
+pub fn play_watched(
+    assembly: &Assembly,
+    patches: &[Patch],
+    of: &[PartIx],
+    still: &[PartIx],
+    watch: &Watch,
+) -> Result<Vec<Extreme>, Fault> {
     let rows = rows(patches, Freedom::Rigid);
     let unknowns = Unknowns::new(assembly, &rows, still, Freedom::Rigid);
     let movable: Vec<PartIx> = of.iter().copied().filter(|p| unknowns.column[p.at()].is_some()).collect();
@@ -74,16 +89,25 @@ pub fn play(
     if programs.saturating_mul(rows.len()) > MOST_WORK {
         return Err(Fault::TooMuch { programs, rows: rows.len() });
     }
-    let each = movable.par_iter().map(|&part| of_part(&rows, &unknowns, part));
+    let stage = watch.stage("how far parts get", "programs", All::Just(programs as u64));
+    let each = movable.par_iter().map(|&part| of_part(&rows, &unknowns, part, (watch, &stage)));
     Ok(each.collect::<Vec<_>>().concat())
 }
 
-fn of_part(rows: &[Row], unknowns: &Unknowns, part: PartIx) -> Vec<Extreme> {
+fn of_part(
+    rows: &[Row],
+    unknowns: &Unknowns,
+    part: PartIx,
+    (watch, stage): (&Watch, &Stage),
+) -> Vec<Extreme> {
     let mut program = Program::new(rows, unknowns);
     let Some(column) = unknowns.column[part.at()] else { return Vec::new() };
     let ways = [Kind::Shift, Kind::Tilt].into_iter().flat_map(|kind| (0..3).map(move |axis| (kind, axis)));
     let ways = ways.flat_map(|(kind, axis)| [1.0, -1.0].map(|sign| (kind, axis, sign)));
     ways.map(|(kind, axis, sign)| {
+        if watch.is_stopped() {
+            return Extreme { part, kind, axis, sign, reach: Reach::Unsolved { why: STOPPED.into() } };
+        }
         // Rotations are unknowns times the part's lever.
         let (at, unit) = match kind {
             Kind::Shift => (column + axis, 1.0),
@@ -96,6 +120,7 @@ fn of_part(rows: &[Row], unknowns: &Unknowns, part: PartIx) -> Vec<Extreme> {
             Farthest::Endless { x } => Reach::Endless { twists: twists(unknowns, &x) },
             Farthest::Unsolved { why } => Reach::Unsolved { why },
         };
+        stage.add(1);
         Extreme { part, kind, axis, sign, reach }
     })
     .collect()

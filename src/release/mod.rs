@@ -14,6 +14,8 @@ pub enum At<P> {
     NotFound(String),
     /// Some part has nothing left, so there is no larger clearance either.
     Gone(String),
+    /// The user stopped it: nothing is known.
+    Stopped,
 }
 
 /// One clearance that was tried.
@@ -33,6 +35,15 @@ pub struct Bracket<P> {
     /// The smallest clearance tried that leaves nothing of some part, and of which.
     pub gone: Option<(f64, String)>,
     pub tried: Vec<Tried>,
+    /// Whether it was brought to its end.
+    pub end: End,
+}
+
+/// How a search for a bracket ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum End {
+    Done,
+    Stopped,
 }
 
 /// Lengths between which the bracket is looked for.
@@ -64,13 +75,13 @@ pub fn range(asm: &Assembly) -> Range {
 pub const NARROW: f64 = 17.0 / 16.0;
 
 pub fn bracket<P>(range: Range, at: impl Fn(f64) -> At<P>) -> Bracket<P> {
-    let mut found = Bracket { lo: 0.0, why: None, hi: None, gone: None, tried: Vec::new() };
+    let mut found = Bracket { lo: 0.0, why: None, hi: None, gone: None, tried: Vec::new(), end: End::Done };
     let mut next = range.start;
-    while next <= range.most && found.hi.is_none() && found.gone.is_none() {
+    while next <= range.most && found.hi.is_none() && found.gone.is_none() && found.end == End::Done {
         found.take(next, at(next));
         next *= 2.0;
     }
-    while let Some(next) = found.between(range.least) {
+    while let Some(next) = found.between(range.least).filter(|_| found.end == End::Done) {
         found.take(next, at(next));
     }
     found
@@ -90,6 +101,10 @@ impl<P> Bracket<P> {
             At::Gone(why) => {
                 self.gone = Some((clearance, why));
                 "nothing-left"
+            }
+            At::Stopped => {
+                self.end = End::Stopped;
+                "stopped"
             }
         };
         self.tried.push(Tried { clearance, word });

@@ -17,6 +17,7 @@ use crate::fault::Faults;
 use crate::locking::{self, Verdict};
 use crate::made::{self, Made};
 use crate::spec::{self, ProfileSpec, Syntax};
+use crate::watch::{All, Stage, Watch};
 use crate::weave::Weave;
 use explain::Loose;
 use rayon::prelude::*;
@@ -95,9 +96,22 @@ pub fn repeats_made(
     search: &Search,
     made: AsMade,
 ) -> Result<Repeats, Faults> {
+    repeats_watched(weave, profile, search, made, &Watch::default())
+}
+
+/// The same, watched: what a stop leaves is all k whose phases were all tried.
+pub fn repeats_watched(
+    weave: &Weave,
+    profile: &ProfileSpec,
+    search: &Search,
+    made: AsMade,
+    watch: &Watch,
+) -> Result<Repeats, Faults> {
+    let all = u64::from(search.most) * search.phases.len() as u64;
+    let stage = watch.stage("swatches of each k and phase", "swatches", All::AtMost(all));
     let mut tried = Vec::new();
     for repeat in 1..=search.most {
-        let row = round(weave, profile, search, made, repeat)?;
+        let Some(row) = round(weave, profile, search, (made, repeat), (watch, &stage))? else { break };
         let (all, last) = (row.iter().all(Tried::holds), row.iter().all(Tried::is_last));
         tried.extend(row);
         if all || last {
@@ -107,18 +121,25 @@ pub fn repeats_made(
     Ok(Repeats { least: None, tried })
 }
 
-/// Every phase at one k.
+/// Every phase at one k; nothing where it was stopped before all were tried.
 pub fn round(
     weave: &Weave,
     profile: &ProfileSpec,
     search: &Search,
-    made: AsMade,
-    repeat: u32,
-) -> Result<Vec<Tried>, Faults> {
+    (made, repeat): (AsMade, u32),
+    (watch, stage): (&Watch, &Stage),
+) -> Result<Option<Vec<Tried>>, Faults> {
     let of = |&phase: &i32| {
-        attempt(weave, profile, Swatch { wefts: search.wefts, warps: search.warps, repeat, phase }, made)
+        if watch.is_stopped() {
+            return Ok(None);
+        }
+        let swatch = Swatch { wefts: search.wefts, warps: search.warps, repeat, phase };
+        let tried = attempt(weave, profile, swatch, made);
+        stage.add(1);
+        tried.map(Some)
     };
-    search.phases.par_iter().map(of).collect()
+    let all: Result<Vec<Option<Tried>>, Faults> = search.phases.par_iter().map(of).collect();
+    Ok(all?.into_iter().collect())
 }
 
 /// Decides one swatch, built from its own text.

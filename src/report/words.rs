@@ -120,6 +120,9 @@ fn counted(c: &Counted) -> Vec<(String, String)> {
             None => {
                 "every position that moves along the axes reach was looked at, none lets parts leave".into()
             }
+            Some(moves) if k.looked_at == "stopped" => {
+                format!("stopped by the user after looking at all positions within {moves} moves")
+            }
             Some(moves) => format!("the search gave up after looking at all positions within {moves} moves"),
         };
         fact("stay together", format!("{}: {looked}", k.parts.join(", ")))
@@ -148,7 +151,9 @@ fn outcome<C>(plan: &Plan<C>) -> Chapter {
         Outcome::NotFound => {
             let searched = plan.searched.states > 0;
             let excluded = plan.stuck.iter().all(|s| s.straight_moves == Straight::None);
-            let why = if plan.counted.is_some() {
+            let why = if plan.stopped {
+                "Stopped by the user before the search was done."
+            } else if plan.counted.is_some() {
                 "What was looked at on their lattice is told below; turns are not excluded."
             } else if searched {
                 "Looked at were single straight moves, straight moves that stop half way, turns and joint motions, until \

@@ -142,6 +142,9 @@ pub struct Plan<C> {
     /// Moves along the axes of a lattice, where the plan was made on one.
     #[serde(flatten, default, skip_serializing_if = "Option::is_none")]
     pub counted: Option<Counted>,
+    /// True where the user stopped the search before it was done: what is told is the best until then.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub stopped: bool,
 }
 
 /// Share of the moved parts' extent along the direction that a move goes beyond being clear: enough to be seen and to

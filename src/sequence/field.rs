@@ -7,6 +7,7 @@ use crate::blocking::shadow::{Shapes, View};
 use crate::blocking::sweep::meets;
 use crate::blocking::{Touch, sector::Blocked};
 use crate::contact::Patch;
+use crate::watch::Watch;
 use glam::DVec3;
 use std::collections::BTreeSet;
 
@@ -27,12 +28,13 @@ pub struct Field<'a> {
     pub shapes: Shapes,
     pub touch: Touch,
     pub pairs: Pairs,
+    pub watch: Watch,
     sides: Vec<Vec<Side>>,
     volumes: Vec<f64>,
 }
 
 impl<'a> Field<'a> {
-    pub fn new(asm: &'a Assembly, patches: &'a [Patch]) -> Field<'a> {
+    pub fn new(asm: &'a Assembly, patches: &'a [Patch], watch: &Watch) -> Field<'a> {
         let mut sides = vec![Vec::new(); asm.parts.len()];
         for p in patches {
             sides[p.a.at()].push(Side { other: p.b, normal: p.normal });
@@ -45,6 +47,7 @@ impl<'a> Field<'a> {
             shapes: Shapes::of(asm),
             touch: Touch::of(asm),
             pairs: pairs(patches),
+            watch: watch.clone(),
             sides,
             volumes,
         }

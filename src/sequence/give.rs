@@ -7,10 +7,11 @@
 //! strain if the part alone is squeezed by the depth, not a finite element result.
 
 use super::field::{Field, Set};
-use super::{Outcome, plan_of};
+use super::{Motions, Outcome, plan_watched};
 use crate::assembly::PartIx;
 use crate::blocking::shadow::{Outline, View};
 use crate::blocking::sweep::meetings;
+use crate::watch::All;
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 
@@ -50,6 +51,7 @@ pub fn give(field: &Field, set: &Set) -> Option<Giving> {
         return None;
     }
     let free: Vec<PartIx> = set.iter().copied().filter(|&p| !field.is_held(p)).collect();
+    let _stage = field.watch.stage("which part could give", "", All::Open);
     let views: Vec<View> = ways(field, set).into_iter().map(|d| View::new(&field.shapes, d)).collect();
     let best = |&p: &PartIx| {
         let all = views.iter().filter_map(|view| giving(field, view, p, set));
@@ -58,9 +60,10 @@ pub fn give(field: &Field, set: &Set) -> Option<Giving> {
     let mut all: Vec<Giving> = free.par_iter().filter_map(best).collect();
     all.sort_by(|a, b| a.strain.total_cmp(&b.strain).then(a.part.cmp(&b.part)));
     for g in all.iter_mut().take(MOST_RESTS) {
+        let watch = field.watch.unseen();
         let rest: Vec<PartIx> = set.iter().copied().filter(|q| *q != g.part).collect();
-        g.rest =
-            plan_of(field.asm, &rest, field.patches, |_| None::<()>).map_or(Outcome::NotFound, |p| p.outcome);
+        g.rest = plan_watched(field.asm, &rest, field.patches, Motions::Straight, &watch, |_| None::<()>)
+            .map_or(Outcome::NotFound, |p| p.outcome);
         if g.rest == Outcome::Assembled {
             return Some(g.clone());
         }

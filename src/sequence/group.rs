@@ -43,7 +43,7 @@ pub fn group(field: &Field, set: &Set, prefer: &[DVec3]) -> GroupSearch {
     let parts: Vec<PartIx> = set.iter().copied().collect();
     let mut tried = Vec::new();
     for d in prefer.iter().copied().chain(hints(field, set)) {
-        if tried.len() < MOST_GRAPHS && is_new(&tried, d) {
+        if tried.len() < MOST_GRAPHS && is_new(&tried, d) && !field.watch.is_stopped() {
             tried.push(d);
             if let Some(found) = parting(field, set, &dbg(field, &parts, d), d) {
                 return GroupSearch { group: found, tried: tried.len() };
@@ -53,7 +53,7 @@ pub fn group(field: &Field, set: &Set, prefer: &[DVec3]) -> GroupSearch {
     let mut left: VecDeque<Sector> = half_sphere(field, set).into();
     while let Some(sector) = left.pop_front() {
         let d = sector.middle();
-        if tried.len() >= MOST_GRAPHS {
+        if tried.len() >= MOST_GRAPHS || field.watch.is_stopped() {
             return GroupSearch { group: Group::GaveUp, tried: tried.len() };
         }
         tried.push(d);

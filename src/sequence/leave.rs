@@ -34,7 +34,7 @@ pub enum Found {
     Along(DVec3),
     /// No straight move to infinity, as long as all of `because` stay.
     Never { because: Set },
-    /// Not found in `MOST_TRIES`; worth a new try when one of `because` has gone.
+    /// Not found in `MOST_TRIES`, or before a stop; worth a new try when one of `because` has gone.
     GaveUp { because: Set },
 }
 
@@ -46,7 +46,8 @@ pub fn leave(field: &Field, moving: &Set, rest: &Set, prefer: &[DVec3]) -> Searc
     let cone = polar(normals());
     let mut tries = Tries { field, moving, rest, because: &mut because, tried: Vec::new(), cut: Vec::new() };
     let preferred = prefer.iter().copied().filter(|d| normals().all(|n| n.dot(*d) <= SAME_ANGLE));
-    let found = preferred.chain(landmarks(&cone)).find(|&d| tries.is_free(d));
+    let named = preferred.chain(landmarks(&cone)).take_while(|_| !field.watch.is_stopped());
+    let found = named.into_iter().find(|&d| tries.is_free(d));
     let end = found.map_or_else(|| tries.exhaust(sectors(&cone).into()), End::Free);
     let tried = tries.tried.len();
     let found = match end {
@@ -88,6 +89,9 @@ impl Tries<'_, '_> {
     /// First in, first out, so that wide sectors come before their own pieces.
     fn exhaust(&mut self, mut left: VecDeque<Sector>) -> End {
         for _ in 0..MOST_SECTORS {
+            if self.field.watch.is_stopped() {
+                return End::OutOfTries;
+            }
             let Some(sector) = left.pop_front() else { return End::NoneLeft };
             let d = sector.middle();
             let known = |cut: &[Blocked]| cut.iter().position(|b| b.holds(d));

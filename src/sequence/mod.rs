@@ -6,6 +6,9 @@
 //! moves that stop half way, turns and joint motions, with counted work; what is not found then is `not-found`, never
 //! "there is none".
 //!
+//! A stop ends the search between two directions: sets that were not looked at by then are stuck, with nothing known of
+//! them.
+//!
 //! Once a set is clear it is taken off the table: later moves are checked against the parts that it was planned with,
 //! not against those that left before.
 
@@ -20,6 +23,7 @@ pub mod lattice;
 pub mod leave;
 mod motion;
 mod singles;
+pub mod wanted;
 
 pub use answer::{Gives, Order, Outcome, Past, Plan, Reached, Searched, Step, Straight, Stuck};
 pub use motion::{Ends, Motion, Mover, Rigid, Screw, Shift};
@@ -27,6 +31,7 @@ pub use motion::{Ends, Motion, Mover, Rigid, Screw, Shift};
 use crate::assembly::{Assembly, PartIx};
 use crate::blocking::Touch;
 use crate::contact::Patch;
+use crate::watch::{All, Stage, Watch};
 use field::{Field, Set};
 use glam::DVec3;
 use group::Group;
@@ -80,24 +85,41 @@ pub fn plan_by<C>(
     motions: Motions,
     locked: impl Fn(&[PartIx]) -> Option<C>,
 ) -> Result<Plan<C>, Fault> {
+    plan_watched(asm, parts, patches, motions, &Watch::default(), locked)
+}
+
+/// The same, watched: it tells how far it is, and ends with what it has when it is stopped.
+pub fn plan_watched<C>(
+    asm: &Assembly,
+    parts: &[PartIx],
+    patches: &[Patch],
+    motions: Motions,
+    watch: &Watch,
+    locked: impl Fn(&[PartIx]) -> Option<C>,
+) -> Result<Plan<C>, Fault> {
     sane(asm, parts)?;
-    let mut found = Told { steps: vec![], stuck: vec![], searched: Searched::default() };
+    let most = All::AtMost(parts.len().saturating_sub(1) as u64);
+    let stage = watch.stage("taking it apart", "partings", most);
+    let mut found = Told { steps: vec![], stuck: vec![], searched: Searched::default(), watch, stage };
     solve(asm, parts.iter().copied().collect(), patches, motions, &locked, &mut found);
-    let Told { steps, stuck, searched } = found;
+    let Told { steps, stuck, searched, .. } = found;
     let outcome = match () {
         _ if stuck.is_empty() => Outcome::Assembled,
         _ if stuck.iter().any(|s| s.lock.is_some()) => Outcome::NeedsFlexible,
         _ => Outcome::NotFound,
     };
     let touch = Touch::of(asm).depth();
-    Ok(Plan { outcome, order: Order::Disassembly, steps, stuck, searched, touch, counted: None })
+    let stopped = watch.is_stopped() && outcome != Outcome::Assembled;
+    Ok(Plan { outcome, order: Order::Disassembly, steps, stuck, searched, touch, counted: None, stopped })
 }
 
 /// A plan in the making.
-struct Told<C> {
+struct Told<'w, C> {
     steps: Vec<Step>,
     stuck: Vec<Stuck<C>>,
     searched: Searched,
+    watch: &'w Watch,
+    stage: Stage,
 }
 
 /// Takes a set apart by straight moves, and each set that stays together by a way out, as it then stands.
@@ -107,13 +129,14 @@ fn solve<C>(
     patches: &[Patch],
     motions: Motions,
     locked: &dyn Fn(&[PartIx]) -> Option<C>,
-    told: &mut Told<C>,
+    told: &mut Told<'_, C>,
 ) {
-    let field = Field::new(asm, patches);
+    let field = Field::new(asm, patches, told.watch);
     let mut work = Work::new(&field);
     let mut sets = vec![set];
     while let Some(set) = sets.pop() {
         sets.extend(work.take_apart(set));
+        told.stage.add(work.moves.len());
         told.steps.extend(work.moves.drain(..).map(|m| answer::step(&field, &m)));
         for (set, straight) in std::mem::take(&mut work.stuck) {
             way_out(&field, (set, straight), motions, locked, told);
@@ -128,10 +151,17 @@ fn way_out<C>(
     (set, straight): (Set, Straight),
     motions: Motions,
     locked: &dyn Fn(&[PartIx]) -> Option<C>,
-    told: &mut Told<C>,
+    told: &mut Told<'_, C>,
 ) {
+    if told.watch.is_stopped() {
+        told.stuck.push(answer::stuck(field, (set, Straight::Unknown), None, &[]));
+        return;
+    }
     let parts: Vec<PartIx> = set.iter().copied().collect();
-    let lock = locked(&parts);
+    let lock = {
+        let _stage = told.watch.stage(format!("are these {} parts locked", parts.len()), "", All::Open);
+        locked(&parts)
+    };
     if lock.is_some() || motions == Motions::Straight {
         let ask = lock.is_some() && motions == Motions::Any;
         let gives = if ask { give::give(field, &set) } else { None };
@@ -141,7 +171,7 @@ fn way_out<C>(
         });
         return;
     }
-    let found = journey::journey(field.asm, &set, field.patches, field.touch);
+    let found = journey::journey(field, &set);
     told.searched.states += found.work.states;
     told.searched.programs += found.work.programs;
     let Some(exit) = found.exit else {
@@ -150,7 +180,8 @@ fn way_out<C>(
     };
     told.steps.extend(exit.legs.iter().map(|leg| answer::leg(field, &set, leg)));
     let stays: Set = set.difference(&exit.parts).copied().collect();
-    let there = Field::new(&exit.asm, &exit.patches);
+    told.stage.add(1);
+    let there = Field::new(&exit.asm, &exit.patches, told.watch);
     let last = Move { parts: exit.parts.clone(), along: exit.along, stays: stays.clone() };
     told.steps.push(answer::step(&there, &last));
     for set in [exit.parts, stays] {
@@ -212,6 +243,10 @@ impl<'f, 'a> Work<'f, 'a> {
     fn take_apart(&mut self, mut set: Set) -> Vec<Set> {
         while self.singles_leave(&mut set) {}
         if self.is_done(&set) {
+            return vec![];
+        }
+        if self.field.watch.is_stopped() {
+            self.stuck.push((set, Straight::Unknown));
             return vec![];
         }
         self.searched.sets += 1;

@@ -17,7 +17,7 @@ const MOST_SHARED: usize = 16;
 impl Work<'_, '_> {
     /// True when at least one part left the set.
     pub(super) fn singles_leave(&mut self, set: &mut Set) -> bool {
-        if self.is_done(set) {
+        if self.is_done(set) || self.field.watch.is_stopped() {
             return false;
         }
         let (field, used) = (self.field, &self.used);

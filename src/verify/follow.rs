@@ -63,6 +63,7 @@ fn step(made: &Assembly, twists: &[(PartIx, Twist)], by: f64) -> Plan<()> {
         searched: Searched::default(),
         touch: 0.0,
         counted: None,
+        stopped: false,
     }
 }
 

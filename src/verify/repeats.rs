@@ -108,7 +108,7 @@ fn claims(a: &RepeatsAnswer) -> Checked {
     let cases: Option<Vec<u32>> = a.cases.iter().map(|c| c.minimal_repeat).collect();
     let most = cases.and_then(|c| c.into_iter().max());
     let all = most.filter(|&k| a.cases.iter().all(|c| locked(a, c, k)));
-    same("least k", a.minimal_repeat, all)
+    same("least k", a.minimal_repeat, all.filter(|_| !a.stopped))
 }
 
 fn least(a: &RepeatsAnswer, c: &CaseAnswer) -> Option<u32> {

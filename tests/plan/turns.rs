@@ -32,6 +32,7 @@ fn plan(steps: Vec<Step>) -> Plan<()> {
         searched: Searched::default(),
         touch: 0.0,
         counted: None,
+        stopped: false,
     }
 }
 

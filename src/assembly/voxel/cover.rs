@@ -8,6 +8,7 @@
 use super::fit::voxels;
 use crate::spec::puzzle::turn::{Matrix, TURNS, apply, matrix};
 use crate::spec::puzzle::{Fill, Placement, Puzzle, Solution};
+use crate::watch::Watch;
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::ControlFlow;
 
@@ -22,7 +23,7 @@ const MOST_PLACEMENTS: usize = 1_000_000;
 pub enum Covered {
     /// All ways were given.
     All,
-    /// The taker had enough.
+    /// The taker had enough, or someone stopped it.
     Stopped,
     /// The bound was reached.
     OutOfWork,
@@ -42,7 +43,29 @@ struct Search<'p, F> {
     fixed: Bits,
     count: usize,
     work: usize,
+    watch: &'p Watch,
     take: F,
+}
+
+/// The same, watched: when it is stopped the taker is as if he had enough.
+pub fn assemblies_watched(
+    puzzle: &Puzzle,
+    most_work: usize,
+    watch: &Watch,
+    take: impl FnMut(Solution) -> ControlFlow<()>,
+) -> Covered {
+    let Some(board) = Board::of(puzzle) else { return Covered::OutOfWork };
+    let Some(ways) = board.ways(puzzle) else { return Covered::OutOfWork };
+    let ways = board.without_turned(puzzle, ways);
+    let all: Vec<usize> = (0..ways.len()).collect();
+    let mut left: Vec<(usize, usize)> = puzzle.problem.pieces.iter().map(|p| (p.least, p.most)).collect();
+    let (fixed, count) = (board.fixed, board.at.len());
+    let mut search = Search { puzzle, ways, fixed, count, work: most_work, watch, take };
+    let open = search.fixed.clone();
+    match search.fill(&all, &open, &mut left, &mut Vec::new()) {
+        ControlFlow::Continue(()) => Covered::All,
+        ControlFlow::Break(why) => why,
+    }
 }
 
 /// Gives ways to `take` until it breaks or `most_work` placements were tried.
@@ -51,18 +74,7 @@ pub fn assemblies(
     most_work: usize,
     take: impl FnMut(Solution) -> ControlFlow<()>,
 ) -> Covered {
-    let Some(board) = Board::of(puzzle) else { return Covered::OutOfWork };
-    let Some(ways) = board.ways(puzzle) else { return Covered::OutOfWork };
-    let ways = board.without_turned(puzzle, ways);
-    let all: Vec<usize> = (0..ways.len()).collect();
-    let mut left: Vec<(usize, usize)> = puzzle.problem.pieces.iter().map(|p| (p.least, p.most)).collect();
-    let mut search =
-        Search { puzzle, ways, fixed: board.fixed, count: board.at.len(), work: most_work, take };
-    let open = search.fixed.clone();
-    match search.fill(&all, &open, &mut left, &mut Vec::new()) {
-        ControlFlow::Continue(()) => Covered::All,
-        ControlFlow::Break(why) => why,
-    }
+    assemblies_watched(puzzle, most_work, &Watch::default(), take)
 }
 
 /// The result's voxels, numbered.
@@ -214,6 +226,9 @@ impl<F: FnMut(Solution) -> ControlFlow<()>> Search<'_, F> {
         for w in branches {
             if self.work == 0 {
                 return ControlFlow::Break(Covered::OutOfWork);
+            }
+            if self.watch.is_stopped() {
+                return ControlFlow::Break(Covered::Stopped);
             }
             self.work -= 1;
             let (entry, bits) = (self.ways[w].entry, self.ways[w].bits.clone());

@@ -27,6 +27,7 @@ use super::shadow::Shapes;
 use super::{SAME_ANGLE, Touch};
 use crate::assembly::{Assembly, Mobility, PartIx};
 use crate::contact::Patch;
+use crate::watch::{All, Watch};
 use arrangement::{Arrangement, Critical, NoArrangement, arrangement};
 use between::{Between, Numbered, On, Place, Work};
 use circles::Circles;
@@ -66,6 +67,8 @@ pub enum NotRun {
     TooManySteps,
     #[error("{found} arcs in all blocking graphs, more than the {MOST_ARCS} that are kept")]
     TooManyArcs { found: usize },
+    #[error("stopped by the user")]
+    Stopped,
     #[error(transparent)]
     NoArrangement(#[from] NoArrangement),
 }
@@ -89,13 +92,28 @@ pub struct Ndbg {
 
 /// The NDBG of all parts.
 pub fn ndbg(asm: &Assembly, patches: &[Patch], touching: &Pairs, reach: Reach) -> Result<Ndbg, NotRun> {
+    ndbg_watched(asm, patches, touching, reach, &Watch::default())
+}
+
+/// The same, watched: there is nothing before all pairs are known, so a stopped one is not run.
+pub fn ndbg_watched(
+    asm: &Assembly,
+    patches: &[Patch],
+    touching: &Pairs,
+    reach: Reach,
+    watch: &Watch,
+) -> Result<Ndbg, NotRun> {
     let found = match reach {
         Reach::Infinitesimal => {
             let part = touching.iter().filter(|((a, b), _)| !both_held(asm, *a, *b));
             part.map(|(&(a, b), of)| touch(patches, a, b, of)).collect()
         }
-        Reach::Finite => finite(asm, patches, touching)?,
+        Reach::Finite => finite(asm, patches, touching, watch)?,
     };
+    if watch.is_stopped() {
+        return Err(NotRun::Stopped);
+    }
+    let _stage = watch.stage("cutting the sphere of directions", "", All::Open);
     let own: Vec<(Circles, Critical)> = found.par_iter().map(critical).collect::<Result<_, _>>()?;
     let mut circles = Circles::default();
     let mut all = Critical::default();
@@ -130,7 +148,12 @@ fn both_held(asm: &Assembly, a: PartIx, b: PartIx) -> bool {
 }
 
 /// Every pair of parts, but two held ones, which keep their places.
-fn finite(asm: &Assembly, patches: &[Patch], touching: &Pairs) -> Result<Vec<Between>, NotRun> {
+fn finite(
+    asm: &Assembly,
+    patches: &[Patch],
+    touching: &Pairs,
+    watch: &Watch,
+) -> Result<Vec<Between>, NotRun> {
     if let Some(p) = asm.parts.iter().find(|p| asm.solids[p.solid].cells.is_empty()) {
         return Err(NotRun::NoCells(p.id.clone()));
     }
@@ -153,11 +176,20 @@ fn finite(asm: &Assembly, patches: &[Patch], touching: &Pairs) -> Result<Vec<Bet
         return Err(NotRun::TooManyCells { found: count });
     }
     let work = Work::new(MOST_STEPS);
+    let stage = watch.stage("what pairs of parts leave free", "pairs", All::Just(first.len() as u64));
     let made: Option<BTreeMap<&Congruent, Between>> = first
         .into_par_iter()
-        .map(|(key, k)| Some((key, starts[k].clone().with_cells(&shapes, depth, &work)?)))
+        .map(|(key, k)| {
+            if watch.is_stopped() {
+                return None;
+            }
+            let between = starts[k].clone().with_cells(&shapes, depth, &work)?;
+            stage.add(1);
+            Some((key, between))
+        })
         .collect();
-    let made = made.ok_or(NotRun::TooManySteps)?;
+    let made = made.ok_or(if watch.is_stopped() { NotRun::Stopped } else { NotRun::TooManySteps })?;
+    drop(stage);
     Ok(all.iter().zip(&keys).map(|(&(a, b), key)| Between { a, b, ..made[key].clone() }).collect())
 }
 

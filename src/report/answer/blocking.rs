@@ -108,6 +108,9 @@ pub struct BlockingAnswer {
     /// Why what was asked for is not here.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub not_run: Option<String>,
+    /// True where the user stopped it.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub stopped: bool,
     pub remarks: Vec<String>,
     pub source: Source,
 }
@@ -138,6 +141,7 @@ pub fn blocking(joined: &Joined, found: Found, source: Source) -> BlockingAnswer
         dbg: found.dbg,
         ndbg: ndbg.map(|n| written(asm, n)),
         not_run: found.not_run.or(why),
+        stopped: matches!(found.ndbg, Some(Err(NotRun::Stopped))),
         remarks: joined.remarks.clone(),
         source,
     }

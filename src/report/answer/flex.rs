@@ -60,7 +60,7 @@ pub struct FlexAnswer {
     /// `smallest` or `minimal`.
     pub wanted: String,
     /// Whether `orbits` names all that were wanted, and if not what ended the search: `complete`, `smallest-complete`,
-    /// `work`, `time`, `many`.
+    /// `work`, `time`, `many`, `stopped` (by the user).
     pub listed: String,
     pub symmetries: Vec<SymmetryOfParts>,
     /// The proof of the lower bound.
@@ -75,6 +75,9 @@ pub struct FlexAnswer {
     pub clearance_mm: f64,
     /// Locks and plans tried, each counted as its parts squared and its contact patches.
     pub work: u64,
+    /// True where the user stopped the search before it was done: what is told is the best until then.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub stopped: bool,
     pub remarks: Vec<String>,
     pub source: Source,
     pub checksum: String,
@@ -91,6 +94,8 @@ pub fn flex(joined: &Joined, flex: &Flex, ask: &Ask, source: Source) -> FlexAnsw
     let smallest = flex.enough.iter().filter(|e| e.set.len() == flex.upper);
     let mut sets: Vec<&Set> = smallest.flat_map(|e| &e.orbit).collect();
     sets.sort();
+    let stopped = flex.list == Listing::CutShort(Cut::Stopped);
+    let why = stopped.then(|| format!("stopped by the user after {} units of work", flex.work));
     let answer = FlexAnswer {
         verb: "flex".into(),
         name: asm.name.clone(),
@@ -108,7 +113,8 @@ pub fn flex(joined: &Joined, flex: &Flex, ask: &Ask, source: Source) -> FlexAnsw
         doubtful: flex.doubtful.iter().map(named).collect(),
         clearance_mm: ask.clearance * asm.mm_per_unit,
         work: flex.work,
-        remarks: joined.remarks.clone(),
+        stopped,
+        remarks: joined.remarks.iter().cloned().chain(why).collect(),
         source,
         checksum: String::new(),
     };
@@ -126,6 +132,7 @@ fn listed(list: Listing) -> &'static str {
         Listing::SmallestComplete => "smallest-complete",
         Listing::CutShort(Cut::Work) => "work",
         Listing::CutShort(Cut::Time) => "time",
+        Listing::CutShort(Cut::Stopped) => "stopped",
         Listing::CutShort(Cut::Many) => "many",
     }
 }

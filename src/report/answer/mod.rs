@@ -8,6 +8,7 @@ pub mod fab;
 mod flex;
 mod interlock;
 mod play;
+mod preferred;
 mod release;
 pub mod repeats;
 mod sampling;
@@ -21,6 +22,7 @@ pub use interlock::{
     DirectionsAnswer, InterlockAnswer, InterlockWord, KeyAnswer, LockedCore, SearchedAnswer, firm, interlock,
 };
 pub use play::{AxisPlay, Followed, PartPlay, PlayAnswer, PlayWord, play, word as play_word};
+pub use preferred::{HandsAnswer, Met, PreferredAnswer, WishAnswer, preferred};
 pub use release::{
     BracketAnswer, Evidence, Length, ProcessRelease, ReleaseAnswer, ReleaseWord, bracket, length, needs_none,
 };
@@ -169,6 +171,9 @@ pub struct PlanAnswer {
     pub of: Vec<String>,
     /// Air on each face of a contact, mm; 0: the parts as they touch.
     pub clearance_mm: f64,
+    /// What was rather had of the order, and what came of it, where that was asked.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub preferences: Option<PreferredAnswer>,
     pub remarks: Vec<String>,
     pub source: Source,
     pub checksum: String,
@@ -238,6 +243,7 @@ pub fn plan(
         plan,
         of: ids(assembly, of),
         clearance_mm,
+        preferences: None,
         remarks,
         source,
         checksum: String::new(),

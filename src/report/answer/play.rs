@@ -20,6 +20,9 @@ pub struct PlayAnswer {
     /// The parts that play is measured against.
     pub still: Vec<String>,
     pub parts: Vec<PartPlay>,
+    /// True where the user stopped it: ways that were not looked at say so.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub stopped: bool,
     pub remarks: Vec<String>,
     pub source: Source,
 }

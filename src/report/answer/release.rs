@@ -5,7 +5,7 @@
 use super::{Certificate, PlanAnswer, Source};
 use crate::assembly::Assembly;
 use crate::contact::{Joined, Origin};
-use crate::release::Bracket;
+use crate::release::{Bracket, End};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -21,6 +21,9 @@ pub struct ReleaseAnswer {
     pub brackets: Vec<BracketAnswer>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub process: Option<ProcessRelease>,
+    /// True where the user stopped the search before it was done: the brackets are as wide as they were then.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub stopped: bool,
     pub remarks: Vec<String>,
     pub source: Source,
     pub checksum: String,
@@ -132,6 +135,7 @@ pub fn bracket(
         why: match (&found.hi, &found.gone) {
             (Some(_), _) => why,
             (None, Some((_, gone))) => format!("{why}; with more clearance: {gone}"),
+            (None, None) if found.end == End::Stopped => format!("{why}; stopped by the user"),
             (None, None) => format!("{why}; larger clearances leave little of the parts and were not tried"),
         },
         hi: found.hi.as_ref().map(|h| length(joined, h.0)),

@@ -106,6 +106,9 @@ pub struct RepeatsAnswer {
     pub table: Vec<RepeatsRow>,
     /// Proofs for swatches of every size, where asked; of the k of `minimal_repeat`.
     pub every_size: Vec<ClassAnswer>,
+    /// True where the user stopped the search before it was done: `minimal_repeat` is null then.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub stopped: bool,
     pub remarks: Vec<String>,
     pub checksum: String,
 }
@@ -140,6 +143,7 @@ pub fn repeats(
         cases: told,
         every_size: classes.1.iter().map(class).collect(),
         table,
+        stopped: false,
         remarks,
         checksum: String::new(),
     };

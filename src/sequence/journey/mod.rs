@@ -18,6 +18,7 @@ use super::motion::{Motion, Mover, Rigid};
 use crate::assembly::{Assembly, PartIx};
 use crate::blocking::Touch;
 use crate::contact::Patch;
+use crate::watch::{All, Stage, Watch};
 use bodies::{Bodies, Poses};
 use follow::{Distance, Follow};
 use glam::{DAffine3, DQuat, DVec3};
@@ -92,7 +93,8 @@ pub struct Journey {
 }
 
 /// Looks for a way out of the set, straight moves first.
-pub fn journey(asm: &Assembly, set: &Set, patches: &[Patch], touch: Touch) -> Journey {
+pub fn journey(field: &Field, set: &Set) -> Journey {
+    let (asm, patches, touch) = (field.asm, field.patches, field.touch);
     let parts: Vec<PartIx> = set.iter().copied().collect();
     let bodies = Bodies::of(asm, &parts);
     let reached = parts.iter().map(|&part| Reached { part, shift: DVec3::ZERO, turn: 0.0 }).collect();
@@ -104,12 +106,18 @@ pub fn journey(asm: &Assembly, set: &Set, patches: &[Patch], touch: Touch) -> Jo
         seen: BTreeSet::new(),
         reached,
         work: Work::default(),
+        watch: &field.watch,
     };
     if parts.len() > MOST_PARTS {
         return Journey { exit: None, reached: search.reached, work: search.work };
     }
     let frame = wishes::frame(patches, set);
-    let exit = search.straight(&frame).or_else(|| search.turning(&frame, patches));
+    let begin = |what, most: usize| field.watch.stage(what, "poses", All::AtMost(most as u64));
+    let straight = begin("moves that stop half way", MOST_STRAIGHT);
+    let exit = search.straight(&frame, &straight);
+    drop(straight);
+    let turning = begin("turns and joint motions", MOST_STATES);
+    let exit = exit.or_else(|| search.turning(&frame, patches, &turning));
     Journey { exit, reached: search.reached, work: search.work }
 }
 
@@ -129,6 +137,7 @@ struct Search<'a> {
     seen: BTreeSet<(u64, Vec<i64>)>,
     reached: Vec<Reached>,
     work: Work,
+    watch: &'a Watch,
 }
 
 /// A straight exit: which parts of the set, which way.
@@ -143,13 +152,17 @@ impl Search<'_> {
     }
 
     /// Straight moves that stop half way, fewest first.
-    fn straight(&mut self, frame: &[DVec3]) -> Option<Exit> {
+    fn straight(&mut self, frame: &[DVec3], stage: &Stage) -> Option<Exit> {
         let grain = 32.0 * self.touch.depth();
         let mut open = self.begin();
         self.is_new(&self.bodies.home(), grain);
         while let Some(at) = open.pop_front() {
             for poses in self.after_slides(at, frame) {
+                stage.reach(self.nodes.len());
                 if self.nodes.len() >= MOST_STRAIGHT || self.work.spent >= MOST_SPENT / 2 {
+                    return None;
+                }
+                if self.watch.is_stopped() {
                     return None;
                 }
                 if !self.is_new(&poses, grain) {
@@ -175,11 +188,11 @@ impl Search<'_> {
     fn after_slides(&mut self, at: usize, frame: &[DVec3]) -> Vec<Poses> {
         let poses = self.nodes[at].poses.clone();
         let (asm, patches) = self.standing(&poses);
-        let field = Field::new(&asm, &patches);
+        let field = Field::new(&asm, &patches, self.watch);
         let all = self.all();
         let mut out = Vec::new();
         for group in self.groups(&patches) {
-            if self.work.spent >= MOST_SPENT / 2 {
+            if self.work.spent >= MOST_SPENT / 2 || self.watch.is_stopped() {
                 break;
             }
             let moving: Set = group.iter().map(|&k| self.bodies.parts[k]).collect();
@@ -218,7 +231,7 @@ impl Search<'_> {
     }
 
     /// All motions: straight ones and wishes that are followed.
-    fn turning(&mut self, frame: &[DVec3], patches: &[Patch]) -> Option<Exit> {
+    fn turning(&mut self, frame: &[DVec3], patches: &[Patch], stage: &Stage) -> Option<Exit> {
         let grain = self.bodies.movable().map(|k| self.bodies.lever[k]).fold(f64::INFINITY, f64::min) / 32.0;
         // Its own half, however far the last straight state went over the other.
         self.work.spent = self.work.spent.min(MOST_SPENT / 2);
@@ -229,7 +242,8 @@ impl Search<'_> {
             let first = if at == 0 { wishes::free(self.asm, self.bodies, patches) } else { None };
             let wishes = first.into_iter().chain(wishes::single(self.bodies, frame));
             for (wish, distance) in wishes.flat_map(|w| DISTANCES.map(|d| (w.clone(), d))) {
-                if self.nodes.len() >= MOST_STATES || self.work.is_spent() {
+                stage.reach(self.nodes.len());
+                if self.nodes.len() >= MOST_STATES || self.work.is_spent() || self.watch.is_stopped() {
                     return None;
                 }
                 let follow = Follow { bodies: self.bodies, touch: self.touch, distance };
@@ -268,7 +282,7 @@ impl Search<'_> {
     /// The first part that can leave straight from here.
     fn way_out(&mut self, poses: &Poses) -> Option<Way> {
         let (asm, patches) = self.standing(poses);
-        let field = Field::new(&asm, &patches);
+        let field = Field::new(&asm, &patches, self.watch);
         let all = self.all();
         self.bodies.movable().find_map(|k| {
             let moving = Set::from([self.bodies.parts[k]]);

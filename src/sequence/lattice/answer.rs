@@ -6,11 +6,12 @@ use super::apart::{Ends, Kept, Step as Found, Taken, written};
 use super::bricks::Lattice;
 use super::pairs::Brick;
 use super::search::{Fewest, Piece};
-use super::{NoLattice, OnLattice, on_lattice};
+use super::{NoLattice, OnLattice, on_lattice_watched};
 use crate::assembly::{Assembly, PartIx};
 use crate::blocking::Touch;
 use crate::sequence::answer::{Order, Outcome, Plan, Searched, Step, Straight, Stuck};
 use crate::sequence::motion::{self, Motion, Shift};
+use crate::watch::Watch;
 use glam::DVec3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -49,7 +50,7 @@ pub enum Word {
 pub struct KeptAnswer {
     pub parts: Vec<String>,
     /// `all-positions`: every position that moves reach was looked at, so no translations part the set; `bound`: the
-    /// search gave up.
+    /// search gave up; `stopped`: the user stopped it.
     pub looked_at: String,
     /// All positions within so many moves were looked at, where the search gave up.
     pub within_moves: Option<usize>,
@@ -65,6 +66,7 @@ pub struct Asked<'a, W> {
     pub weight: W,
     /// Positions looked at in all; by default as many as memory holds.
     pub most: Option<usize>,
+    pub watch: &'a Watch,
 }
 
 /// The plan on the lattice. `locked` proves a set of parts locked to first order, or gives None.
@@ -72,7 +74,8 @@ pub fn plan<C>(
     asked: &Asked<impl Fn(PartIx) -> i32>,
     locked: impl Fn(&[PartIx]) -> Option<C>,
 ) -> Result<Plan<C>, NoLattice> {
-    let found = on_lattice(asked.asm, asked.parts, asked.step, &asked.weight, asked.most)?;
+    let found =
+        on_lattice_watched(asked.asm, asked.parts, asked.step, &asked.weight, asked.most, asked.watch)?;
     let stuck: Vec<Stuck<C>> =
         found.apart.whole.kept().into_iter().map(|k| stuck(asked, k, &locked)).collect();
     let outcome = match () {
@@ -88,6 +91,7 @@ pub fn plan<C>(
         searched: Searched { sets: found.apart.whole.sets(), directions: AXES, ..Searched::default() },
         touch: Touch::of(asked.asm).depth(),
         counted: Some(counted(asked, &found)),
+        stopped: asked.watch.is_stopped() && outcome != Outcome::Assembled,
     })
 }
 
@@ -100,6 +104,7 @@ fn counted(asked: &Asked<impl Fn(PartIx) -> i32>, found: &OnLattice) -> Counted 
         let (looked_at, within_moves) = match kept {
             Kept::Exhausted => ("all-positions", None),
             Kept::GaveUp { moves } => ("bound", Some(moves)),
+            Kept::Stopped { moves } => ("stopped", Some(moves)),
         };
         KeptAnswer { parts: ids(asked, set), looked_at: looked_at.into(), within_moves }
     };
@@ -124,6 +129,7 @@ fn stuck<C>(
     locked: impl Fn(&[PartIx]) -> Option<C>,
 ) -> Stuck<C> {
     let parts: Vec<PartIx> = set.iter().map(|&k| asked.parts[k]).collect();
+    let locked = |parts: &[PartIx]| if asked.watch.is_stopped() { None } else { locked(parts) };
     let straight_moves = if kept == Kept::Exhausted { Straight::None } else { Straight::Unknown };
     Stuck { parts: ids(asked, set), straight_moves, lock: locked(&parts), reached: vec![], gives: None }
 }

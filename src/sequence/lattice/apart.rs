@@ -8,7 +8,7 @@
 
 use super::moves::{Mask, Way};
 use super::pairs::around;
-use super::search::{End, Fewest, Scene, search};
+use super::search::{End, Fewest, Looks, Scene, search};
 use super::states::Shift;
 
 /// What becomes of the parts that a move moves.
@@ -38,6 +38,8 @@ pub enum Kept {
     Exhausted,
     /// Positions within so many moves were looked at.
     GaveUp { moves: usize },
+    /// The same, and someone stopped it there.
+    Stopped { moves: usize },
 }
 
 /// A set, and how it came apart.
@@ -69,8 +71,8 @@ pub struct Apart {
 }
 
 /// Takes the pieces with these indices apart, looking at `most` positions in all.
-pub fn take_apart(scene: &Scene, members: &[usize], most: usize) -> Apart {
-    let mut work = Work { scene, left: most, states: 0 };
+pub fn take_apart(scene: &Scene, members: &[usize], most: usize, looks: &Looks) -> Apart {
+    let mut work = Work { scene, left: most, states: 0, looks };
     let start = vec![0; 3 * members.len().saturating_sub(1)];
     let whole = work.take(members, &start);
     Apart { whole, states: work.states }
@@ -78,6 +80,7 @@ pub fn take_apart(scene: &Scene, members: &[usize], most: usize) -> Apart {
 
 struct Work<'s> {
     scene: &'s Scene,
+    looks: &'s Looks<'s>,
     left: usize,
     states: usize,
 }
@@ -88,12 +91,13 @@ impl Work<'_> {
         if members.len() < 2 || members.iter().all(|&p| self.scene.pieces[p].held) {
             return taken(Fate::Done);
         }
-        let found = search(self.scene, members, start, self.left);
+        let found = search(self.scene, members, start, self.left, self.looks);
         self.states += found.states;
         self.left = self.left.saturating_sub(found.states);
         match found.end {
             End::Nothing => taken(Fate::Kept(Kept::Exhausted)),
             End::GaveUp { moves } => taken(Fate::Kept(Kept::GaveUp { moves })),
+            End::Stopped { moves } => taken(Fate::Kept(Kept::Stopped { moves })),
             End::Leave { through, parts, way, fewest } => {
                 let mut steps: Vec<Step> =
                     through.windows(2).map(|w| shifted(self.scene, members, &w[0], &w[1])).collect();

@@ -14,11 +14,12 @@ pub mod search;
 pub mod states;
 
 use crate::assembly::{Assembly, PartIx};
+use crate::watch::{All, Watch};
 use apart::{Apart, take_apart};
 pub use bricks::NoLattice;
 
 use bricks::{Lattice, pieces};
-use search::{Piece, Scene};
+use search::{Looks, Piece, Scene};
 
 /// Bytes that positions may take in all, kept or not: 768 MiB, so that a machine of 2 GiB holds a search.
 const MOST_BYTES: usize = 768 << 20;
@@ -47,10 +48,23 @@ pub fn on_lattice(
     weight: impl Fn(PartIx) -> i32,
     most: Option<usize>,
 ) -> Result<OnLattice, NoLattice> {
+    on_lattice_watched(asm, parts, step, weight, most, &Watch::default())
+}
+
+/// The same, watched: a set that is being looked at when it is stopped stays together.
+pub fn on_lattice_watched(
+    asm: &Assembly,
+    parts: &[PartIx],
+    step: Option<f64>,
+    weight: impl Fn(PartIx) -> i32,
+    most: Option<usize>,
+    watch: &Watch,
+) -> Result<OnLattice, NoLattice> {
     let (lattice, pieces) = pieces(asm, parts, step, weight)?;
     let most = most.unwrap_or(MOST_BYTES / (3 * parts.len() + BYTES_BESIDE));
     let all: Vec<usize> = (0..parts.len()).collect();
     let scene = Scene::new(pieces);
-    let apart = take_apart(&scene, &all, most);
+    let stage = watch.stage("moves along the axes", "positions", All::AtMost(most as u64));
+    let apart = take_apart(&scene, &all, most, &Looks { watch, stage });
     Ok(OnLattice { lattice, pieces: scene.pieces, apart, most })
 }

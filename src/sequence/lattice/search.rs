@@ -8,6 +8,7 @@
 use super::moves::{Gaps, Mask, Move, Next, Way, next};
 use super::pairs::{Brick, Pair, around};
 use super::states::{Shift, States};
+use crate::watch::{Stage, Watch};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 
@@ -112,6 +113,8 @@ pub enum End {
     Nothing,
     /// The bound was reached, or there were more moves than are kept; positions within `moves` moves were looked at.
     GaveUp { moves: usize },
+    /// Someone stopped it; positions within `moves` moves were looked at.
+    Stopped { moves: usize },
 }
 
 /// The end, and how many positions were found.
@@ -121,15 +124,25 @@ pub struct Search {
     pub states: usize,
 }
 
+/// Who looks on, and where it is counted.
+#[derive(Debug)]
+pub struct Looks<'w> {
+    pub watch: &'w Watch,
+    pub stage: Stage,
+}
+
 /// Searches from `start` with at most `most` states. `members` are indices of pieces; a state has three coordinates for
 /// each but the first.
-pub fn search(scene: &Scene, members: &[usize], start: &[Shift], most: usize) -> Search {
+pub fn search(scene: &Scene, members: &[usize], start: &[Shift], most: usize, looks: &Looks) -> Search {
     let mut states = States::new(start.len());
     states.add(start, 0);
-    let (mut head, mut depth, mut layer, mut complete) = (0, 0, 1, true);
+    let (mut head, mut depth, mut layer, mut complete, mut counted) = (0, 0, 1, true, 0);
     while head < states.count() {
         if states.count() > most {
             return Search { end: End::GaveUp { moves: depth }, states: states.count() };
+        }
+        if looks.watch.is_stopped() {
+            return Search { end: End::Stopped { moves: depth }, states: states.count() };
         }
         let block = head..states.count().min(head + BLOCK).min(layer.max(head + 1));
         let found: Vec<Next> =
@@ -152,6 +165,8 @@ pub fn search(scene: &Scene, members: &[usize], start: &[Shift], most: usize) ->
                 }
             }
         }
+        looks.stage.add(states.count() - counted);
+        counted = states.count();
         head = block.end;
         if head == layer && head < states.count() {
             (depth, layer) = (depth + 1, states.count());
