@@ -1,13 +1,15 @@
 //! Promises of molds: pull, parting, halves that leave, high points with vents, prints for silicone, trees, refusals.
 
+#[path = "molds/second_kernel.rs"]
+mod second_kernel;
+
 use glam::DVec3;
 use std::path::{Path, PathBuf};
 use std::process::Command;
-use weavelock_fab::check::Outcome;
 use weavelock_fab::files::{Batch, stl};
 use weavelock_fab::mesh::Mesh;
 use weavelock_fab::mold::figures::Figures;
-use weavelock_fab::mold::{Kind, Mold, MoldReport, MoldSpec, Parting, Route, check_openscad, make, write};
+use weavelock_fab::mold::{Kind, Mold, MoldReport, MoldSpec, Parting, Route, make, write};
 use weavelock_fab::report::Severity;
 use weavelock_fab::solid::{Solid, cuboid, frustum};
 
@@ -327,25 +329,4 @@ fn the_same_part_gives_the_same_bytes() {
     };
     let first = bytes();
     assert!(first.len() > 5 && first == bytes());
-}
-
-/// Two kernels make the same solids. Ignored by default: OpenSCAD takes about ten seconds over them.
-#[test]
-#[ignore = "runs OpenSCAD for some ten seconds"]
-fn openscad_makes_the_same_molds_from_the_sources() {
-    for (name, part, route) in [
-        ("scad-wavy", wavy(), Route::Rigid),
-        ("scad-holed", holed(), Route::Silicone),
-        ("scad-tree", angle(), Route::LostWax),
-    ] {
-        let (mut report, dir) = written(&make(&part, &spec(name, route)).unwrap());
-        check_openscad(&mut report, &dir, "openscad");
-        for check in report.pieces.iter().flat_map(|p| &p.checks) {
-            match &check.outcome {
-                Outcome::NotRun(why) => eprintln!("not run: {why}"),
-                other => assert_eq!(*other, Outcome::Passed, "{name}: {}", check.of),
-            }
-        }
-        std::fs::remove_dir_all(dir).unwrap();
-    }
 }

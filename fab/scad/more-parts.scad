@@ -5,8 +5,6 @@ half = "all"; // [all, lower, upper, @names@]
 
 /* [Part] */
 part = "@part@";
-// The part with its undercuts filled: what the halves form.
-filled = "@filled@";
 // What lies below the parting surface; empty where that is a plane.
 below = "@below@";
 // Height of the parting plane, mm.
@@ -14,7 +12,7 @@ parting = @parting@;
 
 /* [Cores] */
 core_names = @core_names@;
-// Each core with all the room that it takes.
+// Each core with all the room that it takes: all air of the part that the halves do not reach.
 core_rooms = @core_rooms@;
 core_pulls = @core_pulls@;
 // How far "all" draws them out, mm.
@@ -73,7 +71,7 @@ module cores() for (f = core_rooms) translate(aside) import(f, convexity = 20);
 
 module lower() difference() {
     union() {
-        difference() { below(); import(filled, convexity = 20); }
+        difference() { below(); import(part, convexity = 20); }
         keys(0);
     }
     bolts();
@@ -83,7 +81,7 @@ module lower() difference() {
 module upper() difference() {
     box(low, high);
     below();
-    import(filled, convexity = 20);
+    import(part, convexity = 20);
     keys(key_clearance);
     bolts();
     for (s = slots) box(s[0], s[1]);

@@ -23,15 +23,30 @@ pub fn snapped(mesh: &Mesh) -> Mesh {
     united(mesh.vertices.iter().map(snap).collect(), mesh.triangles.iter().copied())
 }
 
-/// The solid as STL can hold it, of the same shape, closed and without triangles that cross or have no area: detail that
+/// Step of the grid on which solids of molds stand, mm: four steps of the grid (2^-20 mm) on which OpenSCAD puts every
+/// corner that it reads, uniting those in neighbouring places. Corners on this one it leaves as they are, so that what was
+/// checked here is what it works with. 4 nm; f32 holds it up to 64 mm, and beyond has a coarser grid of its own within it.
+pub const GRID: f64 = 1.0 / 262_144.0;
+
+/// How far a vertex can move when it is put on the grid and in f32, in mm, for coordinates up to `largest` mm.
+pub fn grid_distance(largest: f64) -> f64 {
+    snap_distance(largest).max(GRID / 2.0 * 3f64.sqrt())
+}
+
+/// The mesh as STL can hold it, on `GRID`: equal vertices united, triangles that vanish by it left out.
+pub fn on_grid(mesh: &Mesh) -> Mesh {
+    snapped(&mesh.map(|v| (v / GRID).round() * GRID))
+}
+
+/// The solid as STL can hold it on `GRID`, of the same shape, closed and without triangles that cross or have no area: detail that
 /// f32 can not hold apart is united, beginning at `FINEST` snaps and doubling until the file is so; and the size of that
 /// detail in mm. Where none up to `COARSEST` does, the first that is closed, though other kernels may refuse it; else
 /// `None`.
 pub fn settled(solid: &Solid) -> Option<(Mesh, f64)> {
     let whole = solid.mesh();
     let finest = details(&whole).next().unwrap_or(COARSEST);
-    let as_it_is = std::iter::once_with(|| (mended(snapped(&whole), finest), finest));
-    let united = details(&whole).map(|size| (mended(snapped(&solid.plain(size).mesh()), size), size));
+    let as_it_is = std::iter::once_with(|| (mended(on_grid(&whole), finest), finest));
+    let united = details(&whole).map(|size| (mended(on_grid(&solid.plain(size).mesh()), size), size));
     let mut closed = None;
     for (mesh, size) in as_it_is.chain(united).filter(|(mesh, _)| mesh.closure() == Closure::Closed) {
         if plain(&mesh) && same(solid, &mesh, size) {
@@ -59,7 +74,7 @@ fn plain(mesh: &Mesh) -> bool {
 /// Sizes of detail to do without, in mm: from `FINEST` snaps of the mesh, doubling up to `COARSEST`.
 pub fn details(mesh: &Mesh) -> impl Iterator<Item = f64> + use<> {
     let (lo, hi) = mesh.bounds();
-    let snap = snap_distance(lo.abs().max(hi.abs()).max_element());
+    let snap = grid_distance(lo.abs().max(hi.abs()).max_element());
     std::iter::successors(Some(FINEST * snap), |s| Some(s * 2.0)).take_while(|s| *s <= COARSEST)
 }
 

@@ -59,10 +59,10 @@ const SAME_IN_SNAPS: f64 = 2.0;
 /// The mesh in f32, equal coordinates made equal, and how far a coordinate may be off by both, mm.
 pub fn settled(mesh: &Mesh) -> (Mesh, f64) {
     let (lo, hi) = mesh.bounds();
-    let snap = stl::snap_distance(lo.abs().max(hi.abs()).max_element());
-    let mut meshes = [stl::snapped(mesh)];
+    let snap = stl::grid_distance(lo.abs().max(hi.abs()).max_element());
+    let mut meshes = [stl::on_grid(mesh)];
     aligned(&mut meshes, SAME_IN_SNAPS * snap);
-    (stl::snapped(&meshes[0]), snap * (1.0 + SAME_IN_SNAPS))
+    (stl::on_grid(&meshes[0]), snap * (1.0 + SAME_IN_SNAPS))
 }
 
 /// Makes coordinates of all meshes that differ by at most `within` mm one.
@@ -127,7 +127,7 @@ mod tests {
         let mut m = box_of(30.0);
         m.vertices[1].x += 2e-6;
         let (settled, snap) = settled(&m);
-        assert_eq!(settled, stl::snapped(&box_of(30.0)), "corners are numbered anew");
+        assert_eq!(settled, stl::on_grid(&box_of(30.0)), "corners are numbered anew");
         assert!(snap < 2e-5, "{snap}");
     }
 

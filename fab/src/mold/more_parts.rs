@@ -112,7 +112,6 @@ fn built(candidate: Candidate, spec: &MoldSpec) -> Result<Result<Mold, String>, 
     if let Some(wrong) = mold.findings.iter().find(|f| f.severity == Severity::Error) {
         return Ok(Err(wrong.what.clone()));
     }
-    push(&mut mold, "filled", Kind::Filled, &cored.filled, DVec3::ZERO, 0);
     for (k, core) in cored.cores.iter().enumerate() {
         push(&mut mold, &format!("{}-room", core_name(k)), Kind::Room, &core.room, DVec3::ZERO, 0);
     }

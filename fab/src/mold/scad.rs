@@ -2,6 +2,7 @@
 //!
 //! Not promised: that values other than the ones written leave a mold that opens.
 
+use crate::files::stl::GRID;
 use crate::mold::layout::{Around, EDGE, SLOT, least_side};
 use crate::mold::plan::Channel;
 use crate::mold::rigid::KEY_TIP;
@@ -45,8 +46,9 @@ fn common(mold: &Mold) -> Vec<(&'static str, String)> {
 }
 
 /// What the source moves an imported surface by where it should meet another just in a line, mm: in a hundred roundings of
-/// f32 they touch in points instead, which is no solid to its kernel. A hundredth of the finest layer, and of no axis.
-const ASIDE: DVec3 = DVec3::new(0.0003, 0.0002, -0.0005);
+/// f32 they touch in points instead, which is no solid to its kernel. A hundredth of the finest layer, of no axis, and in
+/// whole steps of `GRID`, so that all corners move alike.
+const ASIDE: DVec3 = DVec3::new(80.0 * GRID, 48.0 * GRID, -128.0 * GRID);
 
 fn of(mold: &Mold, kind: Kind) -> String {
     mold.pieces.iter().find(|p| p.kind == kind).map(|p| file_name(mold, &p.name)).unwrap_or_default()
@@ -62,8 +64,7 @@ pub fn has_all(mold: &Mold) -> bool {
     let count = |kind: Kind| mold.pieces.iter().filter(|p| p.kind == kind).count();
     let stepped = matches!(mold.parting, Some(Parting::Stepped { .. }));
     let cores = count(Kind::Core);
-    (!stepped || count(Kind::Below) == 1)
-        && (cores == 0 || count(Kind::Room) == cores && count(Kind::Filled) == 1)
+    (!stepped || count(Kind::Below) == 1) && (cores == 0 || count(Kind::Room) == cores)
 }
 
 /// The source of a rigid mold, its places filled in.
@@ -81,7 +82,6 @@ fn more_parts(mold: &Mold, cores: &[&Piece]) -> String {
         ("below", of(mold, Kind::Below)),
         ("names", cores.iter().map(|p| p.name.clone()).collect::<Vec<_>>().join(", ")),
         ("core_names", strings(cores.iter().map(quoted).collect())),
-        ("filled", of(mold, Kind::Filled)),
         ("core_rooms", strings(rooms.map(|p| format!("\"{}\"", file_name(mold, &p.name))).collect())),
         ("core_pulls", strings(cores.iter().map(|p| vector(p.pull)).collect())),
         ("low", vector(plan.low)),

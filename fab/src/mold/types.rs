@@ -64,8 +64,6 @@ pub enum Kind {
     Part,
     /// Everything below the parting surface, for the `.scad` sources.
     Below,
-    /// The part with its undercuts filled, for the `.scad` sources.
-    Filled,
     /// A side core with all the room that it takes, for the `.scad` sources.
     Room,
 }
@@ -73,7 +71,7 @@ pub enum Kind {
 impl Kind {
     /// Whether it is a solid to be made, not one that sources refer to.
     pub fn is_made(self) -> bool {
-        !matches!(self, Kind::Part | Kind::Below | Kind::Filled | Kind::Room)
+        !matches!(self, Kind::Part | Kind::Below | Kind::Room)
     }
 }
 
@@ -88,7 +86,6 @@ impl Kind {
             Kind::Flask => "flask, of steel: not printed",
             Kind::Part => "part",
             Kind::Below => "parting surface",
-            Kind::Filled => "part with undercuts filled",
             Kind::Room => "room of a side core",
         }
     }

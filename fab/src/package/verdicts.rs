@@ -7,6 +7,7 @@ use super::{LayingReport, PackageReport};
 use crate::check::slicer::{self, Slicing};
 use crate::check::{Check, Outcome};
 use crate::make::Recipe;
+use crate::mesh::Mesh;
 use crate::process::Process;
 use crate::report::{Finding, Place, Severity};
 use std::collections::BTreeMap;
@@ -18,7 +19,8 @@ pub fn ask(package: &mut PackageReport, recipe: &Recipe, folder: &Path) {
     let name = slicer::name(&programs.slicer);
     let shells: BTreeMap<String, usize> =
         package.report.parts.iter().map(|p| (p.id.clone(), p.read_back.shells())).collect();
-    let of = |id: &String| shells.get(id).copied().unwrap_or(0);
+    // What is no part is a mold's print.
+    let of = |(id, mesh): &(String, Mesh)| shells.get(id).copied().unwrap_or_else(|| mesh.topology().bodies);
     let routes: Vec<Process> = package.report.routes.iter().map(|r| r.process.clone()).collect();
     for plate in &mut package.plates {
         let file = folder.join(&plate.file);
@@ -26,7 +28,7 @@ pub fn ask(package: &mut PackageReport, recipe: &Recipe, folder: &Path) {
             &programs.slicer,
             &name,
             &file,
-            plate.stands.iter().map(|s| of(&s.part)).sum(),
+            plate.shown.iter().map(of).sum(),
         ));
         let Some(process) = routes.iter().find(|p| p.name == plate.process) else { continue };
         if process.print.material == RESIN {
