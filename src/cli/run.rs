@@ -46,8 +46,8 @@ pub fn report(file: &Path, out: &Path, mold: Option<&str>, common: &Common) -> R
     let none = || Answer::not_run("`weavelock fab` makes the parts");
     let mut input = input(&placed, &asked, None, none(), none());
     if let Some(part) = part {
-        let (exhibit, chapter) = molded::exhibit(&placed, part, molded::MoldRoute::Rigid)?;
-        input.exhibits.extend(exhibit);
+        let (exhibits, chapter) = molded::exhibits(&placed, part, molded::MoldRoute::Rigid)?;
+        input.exhibits.extend(exhibits);
         input.molds = Answer::Given(chapter);
     }
     write_whole(out, page(&input).as_bytes())?;
