@@ -14,10 +14,13 @@ use crate::report::draw::{Background, Colour, Item, Mesh, Scene, View, palette};
 use crate::report::viewer::{self, Exhibit};
 use clap::ValueEnum;
 use glam::DVec3;
+use std::collections::BTreeMap;
 use std::sync::Arc;
 use weavelock_fab::mesh;
 use weavelock_fab::mold::figures::Figures;
 use weavelock_fab::mold::{self, Mold, MoldSpec, Piece, Route};
+use weavelock_fab::process;
+use weavelock_fab::report::Report;
 
 #[derive(ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MoldRoute {
@@ -95,6 +98,61 @@ pub fn exhibits(placed: &Placed, part: PartIx, route: MoldRoute) -> Result<(Vec<
     chapter.pictures.push(map.picture);
     chapter.tables.push(map.table);
     Ok((shown, chapter))
+}
+
+/// Shapes whose molds a run shows; the package has all of them.
+const MOST_SHAPES: usize = 3;
+
+/// The molds of what is cast, one for each shape: exhibits for the page, and what is said of them; `None`: nothing is cast.
+pub fn of_cast(placed: &Placed, made: &Report) -> Result<(Vec<Exhibit>, Option<Chapter>), Trouble> {
+    let asm = &placed.joined.assembly;
+    let cast = made.routes.iter().filter_map(|r| Some((r, by_process(r.process.route)?)));
+    let mut shapes: BTreeMap<usize, (PartIx, MoldRoute)> = BTreeMap::new();
+    for (route, mold) in cast {
+        for part in asm.ids().filter(|p| route.parts.contains(&asm.part(*p).id)) {
+            shapes.entry(asm.part(part).solid).or_insert((part, mold));
+        }
+    }
+    let (mut shown, mut chapters) = (vec![], vec![]);
+    for (part, route) in shapes.values().take(MOST_SHAPES) {
+        let (exhibits, chapter) = exhibits(placed, *part, *route)?;
+        shown.extend(exhibits);
+        chapters.push(chapter);
+    }
+    Ok((shown, together(chapters, shapes.len())))
+}
+
+fn by_process(route: process::Route) -> Option<MoldRoute> {
+    match route {
+        process::Route::Print => None,
+        process::Route::CastDirect => Some(MoldRoute::Rigid),
+        process::Route::Cast | process::Route::LostWax => Some(MoldRoute::Silicone),
+        process::Route::LostPrint => Some(MoldRoute::LostWax),
+    }
+}
+
+/// One chapter for all; a single one stays as it is.
+fn together(mut chapters: Vec<Chapter>, shapes: usize) -> Option<Chapter> {
+    if chapters.len() < 2 {
+        return chapters.pop();
+    }
+    let bad = chapters.iter().any(|c| c.tone == Tone::Bad);
+    let mut all = Chapter {
+        tone: if bad { Tone::Bad } else { Tone::Plain },
+        headline: format!(
+            "{shapes} shapes are cast; {} of their molds are shown, the package has all.",
+            chapters.len()
+        ),
+        ..Chapter::default()
+    };
+    for c in chapters {
+        all.words.push(c.headline);
+        all.words.extend(c.words);
+        all.facts.extend(c.facts);
+        all.tables.extend(c.tables);
+        all.pictures.extend(c.pictures);
+    }
+    Some(all)
 }
 
 fn no_mold(mold: &Mold, id: &str) -> Chapter {

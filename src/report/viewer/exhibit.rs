@@ -119,6 +119,10 @@ fn opening(pulls: &[DVec3], radius: f64, ids: &[String]) -> ShownPlan {
         Some(Mover { parts: vec![k], motion: moves::Motion::Translation { by } })
     };
     let movers: Vec<Mover> = pulls.iter().enumerate().filter_map(moved).collect();
+    if movers.is_empty() {
+        let says = "The pieces as they are used; none is pulled off straight.".into();
+        return ShownPlan { name: "Opening".into(), says, steps: vec![] };
+    }
     let stays = (0..pulls.len()).filter(|k| pulls[*k] == DVec3::ZERO).collect();
     let one = Move { movers, stays, clear: None, inside: false };
     let all = Moves { moves: vec![one], unread: None };

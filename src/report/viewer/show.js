@@ -192,9 +192,15 @@ function show(exhibits, stage, canvas) {
     return Object.fromEntries([...count].map(([p, n]) => [exhibit.ids[p], n / all]));
   };
 
+  // How the picture is looked at now: clip coordinates, eye and light of the scene about its middle.
+  const camera = () => {
+    const { see, eye, key, width, height } = look(play.at(state.done), play.table(step()));
+    return { see: Array.from(see), eye, key, width, height };
+  };
+
   choose(0);
   return {
-    state, choose, choosePlan, step, legend, blocking, draw, partAt, pose, shares,
+    camera, state, choose, choosePlan, step, legend, blocking, draw, partAt, pose, shares,
     exhibit: () => exhibit, steps: () => play.steps, finish: () => stage.finish(),
   };
 }
