@@ -20,7 +20,7 @@ use weavelock::report::viewer::{Answers, of_assembly};
 /// The wait for one answer: a picture of 2,000 parts in software takes seconds, on a busy machine many.
 const PATIENCE: Duration = Duration::from_secs(120);
 
-struct Browser {
+pub struct Browser {
     child: Child,
     answers: Receiver<Value>,
     number: u64,
@@ -85,11 +85,11 @@ impl Browser {
     }
 
     /// With WebGL drawn by the processor.
-    fn with_webgl() -> Option<Browser> {
+    pub fn with_webgl() -> Option<Browser> {
         Browser::open(&["--use-angle=swiftshader", "--enable-unsafe-swiftshader"])
     }
 
-    fn call(&mut self, method: &str, params: Value) -> Value {
+    pub fn call(&mut self, method: &str, params: Value) -> Value {
         self.number += 1;
         let mut message = json!({"id": self.number, "method": method, "params": params});
         if let Some(session) = &self.session {
@@ -110,18 +110,20 @@ impl Browser {
     }
 
     /// The value of an expression; a promise is waited for.
-    fn ask(&mut self, expression: &str) -> Value {
+    pub fn ask(&mut self, expression: &str) -> Value {
         let params = json!({"expression": expression, "returnByValue": true, "awaitPromise": true});
         let answer = self.call("Runtime.evaluate", params);
         assert!(answer["exceptionDetails"].is_null(), "{expression}: {answer}");
         answer["result"]["value"].clone()
     }
 
-    fn load(&mut self, html: &str) {
+    pub fn load(&mut self, html: &str) {
         let file = self.folder.join("page.html");
         std::fs::write(&file, html).expect("a page");
         let size = json!({"width": 700, "height": 700, "deviceScaleFactor": 1, "mobile": false});
         self.call("Emulation.setDeviceMetricsOverride", size);
+        // A picture beyond the viewport is laid out without them: the canvas would be another one than measured.
+        self.call("Emulation.setScrollbarsHidden", json!({"hidden": true}));
         self.call("Page.navigate", json!({"url": format!("file://{}", file.display())}));
         let ready = "document.readyState === 'complete' && (!!window.weavelock || !!document.querySelector('[role=status]'))";
         let waited = (0..600).any(|_| {
@@ -132,7 +134,7 @@ impl Browser {
     }
 
     /// Console messages and exceptions.
-    fn complaints(&self) -> Vec<String> {
+    pub fn complaints(&self) -> Vec<String> {
         let loud = ["Runtime.consoleAPICalled", "Runtime.exceptionThrown", "Log.entryAdded"];
         let said = self.heard.iter().filter(|h| loud.iter().any(|m| h["method"] == json!(m)));
         said.map(|h| h["params"].to_string()).collect()
@@ -148,7 +150,7 @@ impl Browser {
     }
 
     /// The canvas as it is on the screen.
-    fn canvas(&mut self) -> Rgba {
+    pub fn canvas(&mut self) -> Rgba {
         let place = self.ask("(() => { const b = document.querySelector('canvas').getBoundingClientRect(); return [b.x, b.y, b.width, b.height]; })()");
         let n = |k: usize| place[k].as_f64().expect("a number");
         let clip = json!({"x": n(0), "y": n(1), "width": n(2), "height": n(3), "scale": 1});
@@ -168,7 +170,7 @@ impl Drop for Browser {
     }
 }
 
-fn unbase64(text: &str) -> Vec<u8> {
+pub fn unbase64(text: &str) -> Vec<u8> {
     let value = |c: u8| match c {
         b'A'..=b'Z' => c - b'A',
         b'a'..=b'z' => c - b'a' + 26,
@@ -185,10 +187,10 @@ fn unbase64(text: &str) -> Vec<u8> {
 }
 
 /// Pixels with 3 or 4 bytes each.
-struct Rgba {
-    width: u32,
-    height: u32,
-    colours: Vec<[u8; 3]>,
+pub struct Rgba {
+    pub width: u32,
+    pub height: u32,
+    pub colours: Vec<[u8; 3]>,
 }
 
 fn decoded(bytes: &[u8]) -> Rgba {
@@ -219,7 +221,7 @@ fn of_image(image: &Image) -> impl Iterator<Item = [u8; 3]> + '_ {
     seen.filter(|p| p[3] > 200).map(|p| [p[0], p[1], p[2]])
 }
 
-fn bare(exhibits: Vec<weavelock::report::viewer::Exhibit>, pictures: Vec<Picture>) -> PageInput {
+pub fn bare(exhibits: Vec<weavelock::report::viewer::Exhibit>, pictures: Vec<Picture>) -> PageInput {
     let none = || Answer::not_run("a test");
     PageInput {
         title: "a page".into(),
@@ -242,7 +244,7 @@ fn bare(exhibits: Vec<weavelock::report::viewer::Exhibit>, pictures: Vec<Picture
 }
 
 /// Steps of all kinds: single parts up, one by a screw, two at once. Only to be shown; nothing says that it can be done.
-fn shown_plan(joined: &Joined) -> Value {
+pub fn shown_plan(joined: &Joined) -> Value {
     let ids: Vec<&str> = joined.assembly.parts.iter().map(|p| p.id.as_str()).collect();
     let up = |k: usize| json!({"parts": [ids[k]], "kind": "translation", "direction": [0.0, 0.6, 0.8], "distance": 3.0 + k as f64, "clear": 0.0, "stays": &ids[k + 1..]});
     let mut steps: Vec<Value> = (0..ids.len() - 3).map(up).collect();
@@ -255,7 +257,7 @@ fn shown_plan(joined: &Joined) -> Value {
 }
 
 /// `wefts` x `warps` plain strands in pieces of one unit tile: as many parts as the product.
-fn swatch(wefts: u32, warps: u32) -> Joined {
+pub fn swatch(wefts: u32, warps: u32) -> Joined {
     let layout = format!("wefts = {wefts}\nwarps = {warps}\ncut = \"tiles\"\nrepeat = 1\n");
     let joined = joined(&crate::support::woven([1, 1, 1], 8, &format!("[swatch]\n{layout}")));
     assert_eq!(joined.assembly.parts.len() as u32, wefts * warps);

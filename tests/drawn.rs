@@ -10,7 +10,7 @@ use weavelock::report::export::{self, glb, ply, step, tables};
 use weavelock::report::moves;
 
 /// A free swatch with a plan, small enough for many pictures.
-const LOOSE: &str = "name = \"loose\"\n[weave]\nabc = [1, 1, 1]\n[profile]\nsamples = 2\n[swatch]\nwefts = 2\nwarps = 4\n\
+pub const LOOSE: &str = "name = \"loose\"\n[weave]\nabc = [1, 1, 1]\n[profile]\nsamples = 2\n[swatch]\nwefts = 2\nwarps = 4\n\
                      cut = \"tiles\"\nrepeat = 1\n[size]\npitch = \"20 mm\"\n";
 
 fn room(name: &str) -> PathBuf {
@@ -334,4 +334,39 @@ fn export_writes_what_the_ending_says() {
     }
     let (code, _) = told(&at, "export", &["--as", "obj", "--out", &file(&at, "parts")]);
     assert_eq!((code, std::fs::read_dir(at.join("parts")).expect("a folder").count()), (0, 8));
+}
+
+/// The class of each facet is seen, named and summed on the page: in 3D, as a picture and in a table.
+#[test]
+fn a_page_with_a_mold_has_its_map_of_draft_and_undercut() {
+    let at = room("draft-map");
+    let (_, said) = told(&at, "report", &["--mold", "weft-0/0", "--out", &file(&at, "page.html"), "--quiet"]);
+    let html = std::fs::read_to_string(at.join("page.html")).unwrap_or_else(|e| panic!("{e}: {said}"));
+    let start = html.find("id=\"viewer-data\">").expect("data") + "id=\"viewer-data\">".len();
+    let end = start + html[start..].find("</script>").expect("an end");
+    let data: Value = serde_json::from_str(&html[start..end]).expect("JSON");
+    let map = &data["exhibits"][2];
+    assert_eq!(map["name"], json!("draft and undercut of weft-0/0"));
+    let legend = map["schemes"][0]["legend"].as_array().expect("a legend");
+    assert_eq!(legend.len(), 4);
+    // "draft over 10°: 12.3 mm² (45.6 %)": the shares of all classes make the whole surface.
+    let share = |l: &Value| {
+        let words = l[1].as_str().expect("words");
+        let from = words.rfind('(').expect("a share") + 1;
+        words[from..].trim_end_matches(" %)").parse::<f64>().expect("a number")
+    };
+    let all: f64 = legend.iter().map(share).sum();
+    // Each of four is rounded to a tenth.
+    assert!((all - 100.0).abs() <= 0.2 + 1e-9, "{all} %");
+    let count = |k: usize| {
+        data["exhibits"][k]["shapes"]
+            .as_array()
+            .into_iter()
+            .flatten()
+            .map(|s| s["triangles"].as_u64().expect("a count"))
+            .collect::<Vec<_>>()
+    };
+    // Every facet of the part as it lies in the mold is in one class.
+    assert_eq!(count(2).iter().sum::<u64>(), count(1)[0]);
+    assert!(html.contains("Draft and undercut") && html.contains("% of the surface"));
 }

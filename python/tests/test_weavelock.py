@@ -3,6 +3,8 @@
 import json
 import os
 import signal
+import subprocess
+import sys
 import threading
 import time
 from pathlib import Path
@@ -108,3 +110,23 @@ def test_an_interrupt_is_heard():
 
 def test_answers_are_those_of_the_program():
     assert json.loads(json.dumps(weavelock.ask("check", PLAIN))) == weavelock.check(PLAIN)
+
+
+def test_the_notebook_runs(monkeypatch):
+    """Every cell, in order, from the notebook's own folder; the last one says that the certificate is of full rank."""
+    notebook = ROOT / "python/examples/notebook.ipynb"
+    monkeypatch.chdir(notebook.parent)
+    cells = json.loads(notebook.read_text(encoding="utf-8"))["cells"]
+    sources = ["".join(cell["source"]) for cell in cells if cell["cell_type"] == "code"]
+    names = {}
+    for source in sources:
+        exec(compile(source, "notebook.ipynb", "exec"), names)
+    assert names["answer"]["verdict"] == "locked"
+    rank = np.linalg.matrix_rank(names["rows"])
+    assert rank == names["rows"].shape[1]
+
+
+def test_the_stubs_say_what_the_functions_are():
+    pytest.importorskip("mypy.stubtest", reason="not run: no mypy here")
+    done = subprocess.run([sys.executable, "-m", "mypy.stubtest", "weavelock"], capture_output=True, text=True)
+    assert done.returncode == 0, done.stdout + done.stderr

@@ -1,6 +1,6 @@
 from os import PathLike
 from pathlib import Path
-from typing import Any, Iterable, Mapping, Sequence, Tuple, Union
+from typing import Any, Iterable, Mapping, Sequence, Tuple, Union, final
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -9,6 +9,12 @@ _File = Union[str, "PathLike[str]"]
 _Weave = Union[Sequence[int], _File]
 _Answer = dict[str, Any]
 
+__all__ = [
+    "Assembly", "ask", "blocking", "chirality", "check", "fab", "flex", "load", "from_meshes", "plan", "play",
+    "release", "repeats", "verify", "weave",
+]
+
+@final
 class Assembly:
     @property
     def name(self) -> str: ...

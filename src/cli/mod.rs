@@ -13,6 +13,7 @@ mod hands;
 mod interlock;
 mod load;
 mod make;
+mod mold_map;
 mod molded;
 pub mod new;
 mod package;

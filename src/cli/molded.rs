@@ -1,9 +1,10 @@
-//! Takes a part of an assembly; gives the mold for it, as it opens: a figure, and an exhibit for a page.
+//! Takes a part of an assembly; gives the mold for it, as it opens: a figure, and exhibits for a page.
 //!
 //! The part is molded as it touches, without clearance or shrinkage: to see whether and how it opens. `fab` makes the
 //! mold for use.
 
 use super::load::Placed;
+use super::mold_map;
 use super::told::Trouble;
 use crate::assembly::PartIx;
 use crate::report::content::{Chapter, Tone};
@@ -13,10 +14,13 @@ use crate::report::draw::{Background, Colour, Item, Mesh, Scene, View, palette};
 use crate::report::viewer::{self, Exhibit};
 use clap::ValueEnum;
 use glam::DVec3;
+use std::collections::BTreeMap;
 use std::sync::Arc;
 use weavelock_fab::mesh;
 use weavelock_fab::mold::figures::Figures;
 use weavelock_fab::mold::{self, Mold, MoldSpec, Piece, Route};
+use weavelock_fab::process;
+use weavelock_fab::report::Report;
 
 #[derive(ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MoldRoute {
@@ -80,52 +84,116 @@ pub fn figure(placed: &Placed, part: PartIx, route: MoldRoute) -> Result<Result<
 /// How far a piece is pulled off, in the part's longest side.
 const OPEN: f64 = 0.8;
 
-/// The mold as an exhibit with what was measured of it.
-pub fn exhibit(
-    placed: &Placed,
-    part: PartIx,
-    route: MoldRoute,
-) -> Result<(Option<Exhibit>, Chapter), Trouble> {
+/// The mold and its map of draft and undercut as exhibits, with what was measured; without a mold the map alone.
+pub fn exhibits(placed: &Placed, part: PartIx, route: MoldRoute) -> Result<(Vec<Exhibit>, Chapter), Trouble> {
     let mold = made(placed, part, route)?;
     let id = &placed.joined.assembly.part(part).id;
-    if mold.pieces.is_empty() {
-        let headline = format!("No mold of {id} by this route.");
-        return Ok((
-            None,
-            Chapter { tone: Tone::Bad, headline, words: vec![refused(&mold)], ..Chapter::default() },
-        ));
+    let map = mold_map::map(&mold, id).map_err(|e| Trouble::Word(format!("error: a picture: {e}")))?;
+    let (mut shown, mut chapter) = match mold.pieces.is_empty() {
+        true => (vec![], no_mold(&mold, id)),
+        false => (vec![opened(&mold, id)], told(&mold, id)),
+    };
+    shown.push(map.exhibit);
+    chapter.facts.splice(0..0, pulled(&mold));
+    chapter.pictures.push(map.picture);
+    chapter.tables.push(map.table);
+    Ok((shown, chapter))
+}
+
+/// Shapes whose molds a run shows; the package has all of them.
+const MOST_SHAPES: usize = 3;
+
+/// The molds of what is cast, one for each shape: exhibits for the page, and what is said of them; `None`: nothing is cast.
+pub fn of_cast(placed: &Placed, made: &Report) -> Result<(Vec<Exhibit>, Option<Chapter>), Trouble> {
+    let asm = &placed.joined.assembly;
+    let cast = made.routes.iter().filter_map(|r| Some((r, by_process(r.process.route)?)));
+    let mut shapes: BTreeMap<usize, (PartIx, MoldRoute)> = BTreeMap::new();
+    for (route, mold) in cast {
+        for part in asm.ids().filter(|p| route.parts.contains(&asm.part(*p).id)) {
+            shapes.entry(asm.part(part).solid).or_insert((part, mold));
+        }
     }
-    let mut pieces = vec![(id.clone(), drawn(&mold.part), DVec3::ZERO)];
-    pieces.extend(made_pieces(&mold).map(|p| (p.name.clone(), drawn(&p.mesh), p.pull)));
-    let pull = mold.pull.direction;
+    let (mut shown, mut chapters) = (vec![], vec![]);
+    for (part, route) in shapes.values().take(MOST_SHAPES) {
+        let (exhibits, chapter) = exhibits(placed, *part, *route)?;
+        shown.extend(exhibits);
+        chapters.push(chapter);
+    }
+    Ok((shown, together(chapters, shapes.len())))
+}
+
+fn by_process(route: process::Route) -> Option<MoldRoute> {
+    match route {
+        process::Route::Print => None,
+        process::Route::CastDirect => Some(MoldRoute::Rigid),
+        process::Route::Cast | process::Route::LostWax => Some(MoldRoute::Silicone),
+        process::Route::LostPrint => Some(MoldRoute::LostWax),
+    }
+}
+
+/// One chapter for all; a single one stays as it is.
+fn together(mut chapters: Vec<Chapter>, shapes: usize) -> Option<Chapter> {
+    if chapters.len() < 2 {
+        return chapters.pop();
+    }
+    let bad = chapters.iter().any(|c| c.tone == Tone::Bad);
+    let mut all = Chapter {
+        tone: if bad { Tone::Bad } else { Tone::Plain },
+        headline: format!(
+            "{shapes} shapes are cast; {} of their molds are shown, the package has all.",
+            chapters.len()
+        ),
+        ..Chapter::default()
+    };
+    for c in chapters {
+        all.words.push(c.headline);
+        all.words.extend(c.words);
+        all.facts.extend(c.facts);
+        all.tables.extend(c.tables);
+        all.pictures.extend(c.pictures);
+    }
+    Some(all)
+}
+
+fn no_mold(mold: &Mold, id: &str) -> Chapter {
+    let headline = format!("No mold of {id} by this route.");
+    Chapter { tone: Tone::Bad, headline, words: vec![refused(mold)], ..Chapter::default() }
+}
+
+fn opened(mold: &Mold, id: &str) -> Exhibit {
+    let mut pieces = vec![(id.to_string(), drawn(&mold.part), DVec3::ZERO)];
+    pieces.extend(made_pieces(mold).map(|p| (p.name.clone(), drawn(&p.mesh), p.pull)));
+    viewer::of_mold(&format!("mold of {id}"), pieces)
+}
+
+/// The pull, and what stands in its way.
+fn pulled(mold: &Mold) -> Vec<(String, String)> {
+    let (pull, least) = (mold.pull.direction, mold.figures.draft.value);
+    let of_the_part = format!("({:.3}, {:.3}, {:.3}) in the part's frame", pull.x, pull.y, pull.z);
+    vec![
+        ("pull".into(), of_the_part),
+        ("directions looked at".into(), mold.pull.candidates.to_string()),
+        ("undercut".into(), format!("{:.2} mm², hidden from both halves", mold.pull.undercut_mm2)),
+        (format!("draft under {least}°"), format!("{:.2} mm²", mold.maps.low_draft_mm2)),
+    ]
+}
+
+fn told(mold: &Mold, id: &str) -> Chapter {
+    let kept = |kept: bool| if kept { "kept" } else { "not kept" };
     let measured = mold.measured.iter().map(|m| {
-        (
-            m.of.clone(),
-            format!(
-                "{:.4} {} (limit {:.4}, {})",
-                m.value,
-                m.unit,
-                m.limit,
-                if m.kept { "kept" } else { "not kept" }
-            ),
-        )
+        let value = format!("{:.4} {} (limit {:.4}, {})", m.value, m.unit, m.limit, kept(m.kept));
+        (m.of.clone(), value)
     });
-    let mut facts = vec![
-        ("pull".to_string(), format!("({:.3}, {:.3}, {:.3}) in the part's frame", pull.x, pull.y, pull.z)),
-        ("undercut".into(), format!("{:.2} mm2", mold.pull.undercut_mm2)),
-    ];
-    facts.extend(measured);
-    let chapter = Chapter {
+    Chapter {
         tone: Tone::Plain,
         headline: format!(
             "A mold of {id} in {} pieces; choose it in the 3D view to see it open.",
-            mold.pieces.len()
+            made_pieces(mold).count()
         ),
         words: mold.findings.iter().map(|f| format!("{} ({})", f.what, f.remedy)).collect(),
-        facts,
+        facts: measured.collect(),
         ..Chapter::default()
-    };
-    Ok((Some(viewer::of_mold(&format!("mold of {id}"), pieces)), chapter))
+    }
 }
 
 fn drawn(mesh: &mesh::Mesh) -> Mesh {

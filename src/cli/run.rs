@@ -53,8 +53,8 @@ pub fn report(
     let none = || Answer::not_run("`weavelock fab` makes the parts");
     let mut input = input(&placed, &asked, None, none(), none());
     if let Some(part) = part {
-        let (exhibit, chapter) = molded::exhibit(&placed, part, molded::MoldRoute::Rigid)?;
-        input.exhibits.extend(exhibit);
+        let (exhibits, chapter) = molded::exhibits(&placed, part, molded::MoldRoute::Rigid)?;
+        input.exhibits.extend(exhibits);
         input.molds = Answer::Given(chapter);
     }
     write_whole(out, page(&input).as_bytes())?;
@@ -199,7 +199,11 @@ fn everything(loaded: Loaded, out: &Path, common: &Common) -> Result<Told, Troub
     }
     let parts = Answer::Given(make::fab_chapter(&made, &folder, &[]));
     let ledger = Answer::Given(make::ledger_chapter(&made));
-    keep("report.html", page(&input(&placed, &asked, as_made.as_ref(), parts, ledger)).as_bytes())?;
+    let mut input = input(&placed, &asked, as_made.as_ref(), parts, ledger);
+    let (exhibits, molds) = molded::of_cast(&placed, &made)?;
+    input.exhibits.extend(exhibits);
+    input.molds = molds.map_or(input.molds, Answer::Given);
+    keep("report.html", page(&input).as_bytes())?;
     let fab = cast.unwrap_or(fab);
     Ok(summary(&placed, asked, as_made, fab, files, out))
 }

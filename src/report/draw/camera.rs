@@ -133,11 +133,6 @@ impl Camera {
         1.0 / self.scale(self.frame.back.dot(p))
     }
 
-    /// Of the picture, in pixels.
-    pub fn width(&self) -> f64 {
-        self.half.x * 2.0
-    }
-
     fn scale(&self, z: f64) -> f64 {
         match self.lens {
             Lens::Parallel { scale } => scale,

@@ -41,6 +41,8 @@ pub(super) struct Look<'a> {
     pub scene: &'a Scene,
     pub stage: &'a Stage,
     pub camera: &'a Camera,
+    /// Along a pixel's side.
+    pub samples: usize,
 }
 
 impl Look<'_> {
@@ -85,19 +87,14 @@ impl Look<'_> {
 
     /// Whether each sample's point lies well off the other's plane: one surface ends in front of another.
     fn step(&self, layer: &Layer, (f, a): (&Facing, usize), (g, b): (&Facing, usize)) -> bool {
-        let place = |k: usize| (k % layer.width, (k / layer.width) as i64 + layer.first_row);
-        let samples = self.samples(layer);
+        let samples = self.samples as f64;
         let point = |s: &Facing, k: usize| {
-            let (x, y) = place(k);
+            let (x, y) = layer.place(k);
             self.hit(s, (x as f64 + 0.5) / samples, (y as f64 + 0.5) / samples)
         };
         let (p, q) = (point(f, a), point(g, b));
         let off = |s: &Facing, p: DVec3| plane(s).dot(p - s.corners[0]).abs();
         off(g, p).min(off(f, q)) > STEP_PIXELS * self.camera.footprint(p)
-    }
-
-    fn samples(&self, layer: &Layer) -> f64 {
-        layer.width as f64 / self.camera.width()
     }
 
     /// The point of a triangle's plane that a point of the picture (in pixels) shows.

@@ -60,9 +60,11 @@ fn turn([a, b, c]: &[DVec3; 3]) -> f64 {
     (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x)
 }
 
-/// The nearest triangle of each sample in some rows of the picture.
+/// The nearest triangle of each sample in a window of the picture.
 pub(super) struct Layer {
+    /// Of the window, in samples.
     pub width: usize,
+    pub first_column: usize,
     pub first_row: i64,
     pub rows: usize,
     pub nearest: Vec<u32>,
@@ -71,10 +73,12 @@ pub(super) struct Layer {
 }
 
 impl Layer {
-    pub fn empty(width: usize, rows: Range<i64>, tie: f64) -> Layer {
+    pub fn empty(columns: Range<usize>, rows: Range<i64>, tie: f64) -> Layer {
+        let width = columns.len();
         let count = width * (rows.end - rows.start) as usize;
         Layer {
             width,
+            first_column: columns.start,
             first_row: rows.start,
             rows: (rows.end - rows.start) as usize,
             nearest: vec![NOTHING; count],
@@ -85,24 +89,39 @@ impl Layer {
 
     pub fn draw(&mut self, number: u32, seen: &[DVec3; 3]) {
         let rows = self.first_row..self.first_row + self.rows as i64;
-        let tie = self.tie;
-        let (nearest, near, width, first) = (&mut self.nearest, &mut self.near, self.width, self.first_row);
-        spans(seen, width, rows, |y, xs, ramp| {
+        let columns = self.first_column..self.first_column + self.width;
+        let (tie, width, first, left) = (self.tie, self.width, self.first_row, self.first_column);
+        let (nearest, near) = (&mut self.nearest, &mut self.near);
+        spans(seen, columns, rows, |y, xs, ramp| {
             let row = (y - first) as usize * width;
             for x in xs {
-                let v = ramp.at(x);
-                if v > near[row + x] + tie {
-                    near[row + x] = v;
-                    nearest[row + x] = number;
+                let (v, at) = (ramp.at(x), row + x - left);
+                if v > near[at] + tie {
+                    near[at] = v;
+                    nearest[at] = number;
                 }
             }
         });
     }
 
+    /// Where a sample of the picture lies in the window's lists; `None` beside it.
+    pub fn at(&self, x: usize, y: i64) -> Option<usize> {
+        let column = x.checked_sub(self.first_column).filter(|c| *c < self.width)?;
+        let row = usize::try_from(y - self.first_row).ok().filter(|r| *r < self.rows)?;
+        Some(row * self.width + column)
+    }
+
+    /// Column and row in the picture of an entry of the lists.
+    pub fn place(&self, k: usize) -> (usize, i64) {
+        (k % self.width + self.first_column, (k / self.width) as i64 + self.first_row)
+    }
+
     /// Empties every sample that `front` covers with something at least as near.
     pub fn hide_behind(&mut self, front: &Layer) {
         for k in 0..self.nearest.len() {
-            if front.nearest[k] != NOTHING && front.near[k] >= self.near[k] - self.tie {
+            let (x, y) = self.place(k);
+            let Some(f) = front.at(x, y) else { continue };
+            if front.nearest[f] != NOTHING && front.near[f] >= self.near[k] - self.tie {
                 self.nearest[k] = NOTHING;
             }
         }
@@ -121,10 +140,10 @@ impl Ramp {
     }
 }
 
-/// Calls `row(y, xs, nearness)` for each row of samples that the triangle covers.
+/// Calls `row(y, xs, nearness)` for each row of samples that the triangle covers in a window.
 pub(super) fn spans(
     seen: &[DVec3; 3],
-    width: usize,
+    columns: Range<usize>,
     rows: Range<i64>,
     mut row: impl FnMut(i64, Range<usize>, Ramp),
 ) {
@@ -141,8 +160,9 @@ pub(super) fn spans(
     for y in first..=last {
         let v = y as f64 + 0.5;
         let Some((left, right)) = cut(seen, v) else { continue };
-        let x0 = (left - 0.5 - SPAN_SLACK).ceil().max(0.0) as usize;
-        let x1 = ((right - 0.5 + SPAN_SLACK).floor() + 1.0).clamp(0.0, width as f64) as usize;
+        let (begin, end) = (columns.start as f64, columns.end as f64);
+        let x0 = (left - 0.5 - SPAN_SLACK).ceil().max(begin) as usize;
+        let x1 = ((right - 0.5 + SPAN_SLACK).floor() + 1.0).clamp(begin, end) as usize;
         let start = a.z + (v - a.y) * slope[1] - a.x * slope[0];
         row(y, x0..x1, Ramp { start, slope: slope[0] });
     }

@@ -133,7 +133,7 @@ impl DepthMap {
         let grid =
             |p: &DVec3| DVec3::new((p.x - self.low[0]) / self.texel, (p.y - self.low[1]) / self.texel, p.z);
         let height = &mut self.height;
-        spans(&[grid(a), grid(b), grid(c)], MAP, 0..MAP as i64, |y, xs, ramp| {
+        spans(&[grid(a), grid(b), grid(c)], 0..MAP, 0..MAP as i64, |y, xs, ramp| {
             for x in xs {
                 let at = &mut height[y as usize * MAP + x];
                 *at = at.max(ramp.at(x) as f32);

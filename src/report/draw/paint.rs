@@ -60,7 +60,7 @@ pub fn render_with(scene: &Scene, size: Size, pen: Pen) -> Image {
         ghosts: ghosts(scene, &camera).into_iter().map(|(i, alpha)| (alpha, bin(&|k| k == i))).collect(),
         light: Light::of(scene, &scene.view),
         pen,
-        look: Look { scene, stage: &stage, camera: &camera },
+        look: Look { scene, stage: &stage, camera: &camera, samples: SAMPLES },
         size,
         pens,
     };
@@ -116,10 +116,12 @@ impl Studio<'_> {
         let width = self.size.width() as usize * SAMPLES;
         let reach = self.pens.reach();
         let span = (top * SAMPLES) as i64 - reach..((top + rows) * SAMPLES) as i64 + reach;
-        let solid = self.draw(&self.solid[band], width, span.clone());
+        let solid = self.draw(&self.solid[band], 0..width, span.clone());
         let mut sheets = Vec::new();
-        for (alpha, bins) in &self.ghosts {
-            let mut layer = self.draw(&bins[band], width, span.clone());
+        // A ghost is drawn in a window of its own: where many are, each covers little of the picture.
+        for (alpha, bins) in self.ghosts.iter().filter(|(_, bins)| !bins[band].is_empty()) {
+            let columns = self.columns(&bins[band], width);
+            let mut layer = self.draw(&bins[band], columns, span.clone());
             layer.hide_behind(&solid);
             sheets.push(self.inked(layer, *alpha));
         }
@@ -135,8 +137,18 @@ impl Studio<'_> {
         bytes
     }
 
-    fn draw(&self, numbers: &[u32], width: usize, rows: Range<i64>) -> Layer {
-        let mut layer = Layer::empty(width, rows, self.look.stage.tie);
+    /// The columns of samples that some triangles and the ink about them can touch.
+    fn columns(&self, numbers: &[u32], width: usize) -> Range<usize> {
+        let xs = numbers.iter().flat_map(|&k| self.look.stage.triangles[k as usize].seen.map(|p| p.x));
+        let (lo, hi) = xs.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| (l.min(x), h.max(x)));
+        let reach = self.pens.reach() as f64 + 1.0;
+        // Casts of what is not a number or far out saturate.
+        let first = ((lo - reach).max(0.0) as usize).min(width);
+        first..((hi + reach).max(0.0) as usize + 1).clamp(first, width)
+    }
+
+    fn draw(&self, numbers: &[u32], columns: Range<usize>, rows: Range<i64>) -> Layer {
+        let mut layer = Layer::empty(columns, rows, self.look.stage.tie);
         numbers.iter().for_each(|&k| layer.draw(k, &self.look.stage.triangles[k as usize].seen));
         layer
     }
@@ -168,7 +180,7 @@ impl Studio<'_> {
             Background::Plain(Colour(c)) => [c[0], c[1], c[2], 1.0],
         };
         for sheet in sheets {
-            let at = (y as i64 - sheet.layer.first_row) as usize * sheet.layer.width + x;
+            let Some(at) = sheet.layer.at(x, y as i64) else { continue };
             let seen = sheet.layer.nearest[at];
             if seen != NOTHING {
                 colour = over(self.shade(seen, x, y, known), sheet.alpha, colour);

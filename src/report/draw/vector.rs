@@ -83,7 +83,7 @@ fn strokes(scene: &Scene, size: Size) -> Vec<Stroke> {
 
 fn layer(stage: &Stage, size: Size, keep: impl Fn(u32) -> bool) -> Layer {
     let (w, h) = (size.width() as usize * FINE, i64::from(size.height()) * FINE as i64);
-    let mut layer = Layer::empty(w, 0..h, stage.tie);
+    let mut layer = Layer::empty(0..w, 0..h, stage.tie);
     for (k, f) in stage.triangles.iter().enumerate().filter(|(_, f)| keep(f.item)) {
         layer.draw(k as u32, &f.seen);
     }

@@ -75,6 +75,8 @@ pub struct ShownSigns {
     pub says: String,
     pub colour: Rgb,
     pub shape: Shape,
+    /// Inside the parts, which are drawn faint so that it is seen.
+    pub inside: bool,
 }
 
 /// The assembly as it stands.
@@ -117,6 +119,10 @@ fn opening(pulls: &[DVec3], radius: f64, ids: &[String]) -> ShownPlan {
         Some(Mover { parts: vec![k], motion: moves::Motion::Translation { by } })
     };
     let movers: Vec<Mover> = pulls.iter().enumerate().filter_map(moved).collect();
+    if movers.is_empty() {
+        let says = "The pieces as they are used; none is pulled off straight.".into();
+        return ShownPlan { name: "Opening".into(), says, steps: vec![] };
+    }
     let stays = (0..pulls.len()).filter(|k| pulls[*k] == DVec3::ZERO).collect();
     let one = Move { movers, stays, clear: None, inside: false };
     let all = Moves { moves: vec![one], unread: None };
@@ -128,10 +134,11 @@ fn opening(pulls: &[DVec3], radius: f64, ids: &[String]) -> ShownPlan {
     }
 }
 
-struct Thing {
-    id: String,
-    mesh: usize,
-    pose: DAffine3,
+/// One part to be shown: its id, its mesh among those given with it, where it is.
+pub(super) struct Thing {
+    pub id: String,
+    pub mesh: usize,
+    pub pose: DAffine3,
 }
 
 fn points<'a>(meshes: &'a [Mesh], things: &'a [Thing]) -> impl Iterator<Item = DVec3> + 'a {
@@ -143,7 +150,7 @@ fn longest_side(meshes: &[Mesh], things: &[Thing]) -> f64 {
     Some((hi - lo).max_element()).filter(|s| s.is_finite() && *s > 0.0).unwrap_or(1.0)
 }
 
-fn placed(name: String, mm_per_unit: f64, meshes: &[Mesh], things: &[Thing]) -> Exhibit {
+pub(super) fn placed(name: String, mm_per_unit: f64, meshes: &[Mesh], things: &[Thing]) -> Exhibit {
     let (lo, hi) = bounds(points(meshes, things));
     let middle = if lo.is_finite() { (lo + hi) / 2.0 } else { DVec3::ZERO };
     let shapes: Vec<Shape> = meshes.iter().map(pack::shape).collect();
@@ -247,7 +254,7 @@ fn shown(signs: Signs, middle: DVec3) -> ShownSigns {
     let colour = if signs.name == "Contact forces" { palette::FORCE } else { palette::MOTION };
     let mut mesh = signs.mesh;
     mesh.vertices.iter_mut().for_each(|v| *v -= middle);
-    ShownSigns { name: signs.name, says: signs.says, colour, shape: pack::shape(&mesh) }
+    ShownSigns { name: signs.name, says: signs.says, colour, shape: pack::shape(&mesh), inside: true }
 }
 
 /// More pairs that touch than this make the page heavy (12 bytes each, twice): the colouring is left out then.

@@ -6,9 +6,11 @@
 
 mod colours;
 pub mod exhibit;
+pub mod facets;
 mod pack;
 mod signs;
 
+pub use colours::{Rgb, Scheme};
 pub use exhibit::{Answers, Exhibit, of_assembly, of_mold};
 
 use hmac_sha256::Hash;

@@ -7,9 +7,9 @@ function bytes(text) {
 const floats = (text) => new Float32Array(bytes(text));
 const whole = (text) => new Uint32Array(bytes(text));
 
-// Cells across a shape's longest side in its coarse copy: about three pixels each where the parts share a picture 1,000
+// Cells across a shape's longest side in its coarse copy: about four pixels each where the parts share a picture 1,000
 // pixels wide, so that it hardly shows while things move.
-const cellsFor = (count) => clamp(Math.round(350 / Math.sqrt(count)), 6, 24);
+const cellsFor = (count) => clamp(Math.round(250 / Math.sqrt(count)), 5, 24);
 
 // Corners of one cell (and, for light, of one side of space) become one; triangles that lose a corner go.
 function coarse(shape, cells) {

@@ -9,6 +9,8 @@ const PICKED = [230, 159, 0], STOPS = [22, 92, 152], TOUCHES = [166, 210, 236];
 const DIRECTIONS = ["+x", "−x", "+y", "−y", "+z", "−z"];
 // More triangles than this are drawn from the coarse copies while the picture moves: a phone draws so many in time.
 const MOST_TRIANGLES = 150000;
+// More than this, and triangles are finer than pixels: their edges are not smoothed, which a processor takes seconds for.
+const MOST_SMOOTHED = 1000000;
 
 function show(exhibits, stage, canvas) {
   const loaded = new Map();
@@ -78,7 +80,8 @@ function show(exhibits, stage, canvas) {
     const extra = state.signs ? signs.length : 0;
     const out = new Float32Array(ROW * (exhibit.count + extra));
     const items = meshes.map((mesh) => ({ mesh, lined: true, solid: [], ghost: [] }));
-    const ghostly = (p) => !on[p] || (state.signs && state.picked !== p);
+    const inside = state.signs && exhibit.signs.some((s) => s.inside);
+    const ghostly = (p) => !on[p] || (inside && state.picked !== p);
     let row = 0;
     const put = (p, alpha) => {
       const pose = after(poses[p], exhibit.poses[p]);
@@ -144,7 +147,7 @@ function show(exhibits, stage, canvas) {
     const key = add(add(scale(right, -0.55), scale(up, 0.65)), scale(back, 0.55));
     return {
       see: times(perspective(SLOPE, aspect, near, far), seen), eye, key: scale(key, 1 / norm(key)), cut: cut(),
-      sectioned: state.section.axis >= 0, rough: state.moving && exhibit.triangles > MOST_TRIANGLES, cells: cellsFor(exhibit.count), width, height,
+      sectioned: state.section.axis >= 0, rough: state.moving && exhibit.triangles > MOST_TRIANGLES, smooth: !state.moving && exhibit.triangles <= MOST_SMOOTHED, cells: cellsFor(exhibit.count), width, height,
     };
   };
 
@@ -189,9 +192,15 @@ function show(exhibits, stage, canvas) {
     return Object.fromEntries([...count].map(([p, n]) => [exhibit.ids[p], n / all]));
   };
 
+  // How the picture is looked at now: clip coordinates, eye and light of the scene about its middle.
+  const camera = () => {
+    const { see, eye, key, width, height } = look(play.at(state.done), play.table(step()));
+    return { see: Array.from(see), eye, key, width, height };
+  };
+
   choose(0);
   return {
-    state, choose, choosePlan, step, legend, blocking, draw, partAt, pose, shares,
+    camera, state, choose, choosePlan, step, legend, blocking, draw, partAt, pose, shares,
     exhibit: () => exhibit, steps: () => play.steps, finish: () => stage.finish(),
   };
 }

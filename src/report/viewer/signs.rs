@@ -67,7 +67,8 @@ pub fn motion(motion: &Value, size: f64) -> Option<Signs> {
 
 const SLOWEST_SHOWN: f64 = 0.02;
 
-fn joined(solids: &[Solid]) -> Mesh {
+/// All of them as one mesh.
+pub fn joined(solids: &[Solid]) -> Mesh {
     let mut whole = Solid::default();
     for s in solids {
         let first = whole.vertices.len() as u32;

@@ -42,7 +42,7 @@ const LINE = `${CUT}
 const ROW = 16;
 
 function stage(canvas) {
-  const gl = canvas.getContext("webgl2", { antialias: true, alpha: true, preserveDrawingBuffer: true });
+  const gl = canvas.getContext("webgl2", { antialias: false, alpha: true, preserveDrawingBuffer: true });
   if (!gl) return null;
   const compiled = (kind, text) => {
     const s = gl.createShader(kind);
@@ -121,8 +121,32 @@ function stage(canvas) {
     gl.uniform1i(program.mode, look.flat ? 1 : 0);
   };
 
-  // `items`: buffers with the runs of instances that are solid and those that are seen through.
+  // Edges are smoothed when the picture rests: that is most of the work where the processor draws.
+  const smooth = { buffer: gl.createFramebuffer(), colour: gl.createRenderbuffer(), depth: gl.createRenderbuffer(), size: "" };
+  const SMOOTH = Math.min(4, gl.getParameter(gl.MAX_SAMPLES));
+  const smoothed = ({ width, height }) => {
+    gl.bindFramebuffer(gl.FRAMEBUFFER, smooth.buffer);
+    if (smooth.size === width + "x" + height) return;
+    smooth.size = width + "x" + height;
+    for (const [box, format, place] of [[smooth.colour, gl.RGBA8, gl.COLOR_ATTACHMENT0], [smooth.depth, gl.DEPTH_COMPONENT24, gl.DEPTH_ATTACHMENT]]) {
+      gl.bindRenderbuffer(gl.RENDERBUFFER, box);
+      gl.renderbufferStorageMultisample(gl.RENDERBUFFER, SMOOTH, format, width, height);
+      gl.framebufferRenderbuffer(gl.FRAMEBUFFER, place, gl.RENDERBUFFER, box);
+    }
+  };
   const picture = (rows, items, look) => {
+    const fine = look.smooth && SMOOTH > 1;
+    if (fine) smoothed(look);
+    painted(rows, items, look);
+    if (!fine) return;
+    gl.bindFramebuffer(gl.READ_FRAMEBUFFER, smooth.buffer);
+    gl.bindFramebuffer(gl.DRAW_FRAMEBUFFER, null);
+    gl.blitFramebuffer(0, 0, look.width, look.height, 0, 0, look.width, look.height, gl.COLOR_BUFFER_BIT, gl.NEAREST);
+    gl.bindFramebuffer(gl.FRAMEBUFFER, null);
+  };
+
+  // `items`: buffers with the runs of instances that are solid and those that are seen through.
+  const painted = (rows, items, look) => {
     gl.bindBuffer(gl.ARRAY_BUFFER, instances);
     gl.bufferData(gl.ARRAY_BUFFER, rows, gl.DYNAMIC_DRAW);
     gl.viewport(0, 0, look.width, look.height);
@@ -166,7 +190,7 @@ function stage(canvas) {
     };
     attach(boxes[0], gl.RGBA8, gl.COLOR_ATTACHMENT0);
     attach(boxes[1], gl.DEPTH_COMPONENT24, gl.DEPTH_ATTACHMENT);
-    picture(rows, items, { ...look, flat: true });
+    painted(rows, items, { ...look, flat: true });
     const out = new Uint8Array(4 * width * height);
     gl.readPixels(0, 0, width, height, gl.RGBA, gl.UNSIGNED_BYTE, out);
     gl.bindFramebuffer(gl.FRAMEBUFFER, null);

@@ -23,7 +23,7 @@ try {
     };
     window.weavelock = {
       go: (done) => hands.jump(done, "apart"), done: () => shown.state.done, steps: () => shown.steps().length,
-      pose: shown.pose, shares: shown.shares, frame, state: shown.state, draw: shown.draw,
+      pose: shown.pose, camera: shown.camera, shares: shown.shares, frame, state: shown.state, draw: shown.draw,
       parts: () => shown.exhibit().ids, triangles: () => shown.exhibit().triangles, refresh: hands.refreshLegend,
     };
   }
