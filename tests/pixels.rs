@@ -177,7 +177,7 @@ fn tally(
         _ => false,
     };
     let mut tally = Tally::new();
-    parts.keys().for_each(|k| drop(tally.insert(Some(*k), Found::default())));
+    tally.extend(parts.keys().map(|k| (Some(*k), Found::default())));
     for y in 1..camera.height as i64 - 1 {
         for x in 1..camera.width as i64 - 1 {
             let here = at(x, y);
