@@ -14,7 +14,7 @@ fn room(name: &str) -> PathBuf {
 
 fn small() -> Ask {
     let settings = Settings { samples: 4, ..Settings::default() };
-    Ask { most: 2, flex_up_to: 2, settings, ..Ask::new(4) }
+    Ask { most: 2, flex_up_to: 2, release_up_to: 0, settings, ..Ask::new(4) }
 }
 
 const FILES: [&str; 5] = ["atlas.jsonl", "atlas.csv", "atlas.json", "atlas.svg", "atlas.png"];
@@ -209,7 +209,7 @@ fn every_weave_that_hangs_together_is_in_the_table_or_named_in_it() {
 #[test]
 fn rows_hold_the_known_answers() {
     let of = |a, b, c| {
-        let ask = Ask { flex_up_to: 2, ..Ask::new(8) };
+        let ask = Ask { flex_up_to: 2, release_up_to: 0, ..Ask::new(8) };
         atlas::row(Abc(a, b, c), &ask).unwrap_or_else(|f| panic!("{f}"))
     };
     let plain = of(1, 1, 1);
@@ -221,8 +221,32 @@ fn rows_hold_the_known_answers() {
     assert_eq!(twill.release_clearance.status, Status::NotRun);
 }
 
-const FLAGS: [&str; 10] =
-    ["--max-n", "4", "--most", "2", "--samples", "4", "--flex-up-to", "2", "--phases", "first"];
+/// What `release` says of the same swatch; a plan at one clearance is one at every larger.
+#[test]
+#[ignore = "a quarter of a minute: a dozen plans"]
+fn release_clearance_is_bracketed_where_it_was_asked_for() {
+    let ask = Ask { flex_up_to: 0, release_up_to: 2, phases: Phases::First, ..Ask::new(3) };
+    let of = |a, b, c| atlas::row(Abc(a, b, c), &ask).unwrap_or_else(|f| panic!("{f}")).release_clearance;
+    let (plain, twill) = (of(1, 1, 1), of(2, 1, 1));
+    let (Some(low), Some(high)) = (plain.low, plain.high) else { panic!("no bracket: {plain:?}") };
+    assert_eq!((plain.status, twill.status), (Status::Found, Status::NotRun));
+    assert!(0.0 < low && low < high && high <= low * weavelock::release::NARROW, "{low} to {high}");
+}
+
+const FLAGS: [&str; 12] = [
+    "--max-n",
+    "4",
+    "--most",
+    "2",
+    "--samples",
+    "4",
+    "--flex-up-to",
+    "2",
+    "--release-up-to",
+    "0",
+    "--phases",
+    "first",
+];
 
 /// Killed without a warning at many moments, the table goes on where it stood.
 #[cfg(unix)]

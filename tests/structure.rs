@@ -6,7 +6,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 /// Each module of `src` and the modules that it may use. What stands in one line never uses its neighbours there.
-const FLOW: [&[&str]; 18] = [
+const FLOW: [&[&str]; 19] = [
     &["fault", "solid", "watch"],
     &["input"],
     &["weave"],
@@ -22,7 +22,8 @@ const FLOW: [&[&str]; 18] = [
     &["made"],
     &["repeats", "flex", "chirality", "fabricate", "sampling", "interlock", "play", "release"],
     &["report"],
-    &["verify", "atlas"],
+    &["verify"],
+    &["atlas"],
     &["cli"],
     &["main"],
 ];

@@ -4,6 +4,7 @@
 //! Not promised: that weaves an isometry takes to each other have the same verdicts; the swatch rule breaks ties towards
 //! smaller starts, which no mirror keeps (MATHS.md).
 
+use super::release::release;
 use super::table::{Ask, Phases};
 use super::weaves::{Abc, Equivalent, equivalents};
 use crate::assembly::woven;
@@ -71,7 +72,8 @@ pub struct Flexible {
     pub why: String,
 }
 
-/// Release clearance of the swatch that locks, in crossings.
+/// Clearance that opens the swatch of the least repetition at phase 0, in crossings, on each face of a contact: taken apart
+/// by straight moves with `high`, not found so with `low`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Release {
     pub status: Status,
@@ -117,6 +119,8 @@ pub fn row(abc: Abc, ask: &Ask) -> Result<Row, Faults> {
         hands.as_ref().err().map(HandsError::to_string).into_iter().chain(faults).collect();
     let by_phase: Vec<AtPhase> = phases.into_iter().flatten().collect();
     let hands = hands.ok();
+    let minimal_repeat = by_phase.iter().find(|p| p.phase == 0).and_then(|p| p.least);
+    let release_clearance = release(&weave, ask, minimal_repeat);
     Ok(Row {
         a,
         b,
@@ -127,10 +131,10 @@ pub fn row(abc: Abc, ask: &Ask) -> Result<Row, Faults> {
         tile: hands.as_ref().and_then(|h| h.tile),
         warp_is: hands.as_ref().and_then(|h| h.warp_is),
         assembly: hands.as_ref().and_then(|h| h.assembly),
-        minimal_repeat: by_phase.iter().find(|p| p.phase == 0).and_then(|p| p.least),
+        minimal_repeat,
         by_phase,
         flexible,
-        release_clearance: release(),
+        release_clearance,
         note: note.join("; "),
     })
 }
@@ -165,7 +169,7 @@ fn flexible(weave: &Weave, ask: &Ask) -> Flexible {
         let why = format!("a + b = {n} is over the {} that was asked for", ask.flex_up_to);
         return none(Status::NotRun, why);
     }
-    let spec = window(weave, ask, n);
+    let spec = swatch(weave, ask, Cut::Window, 1);
     let Subject::Woven(woven) = &spec.subject else { return none(Status::NotRun, "no weave".into()) };
     let built = match woven::build(&spec, woven) {
         Ok(built) => built,
@@ -187,15 +191,11 @@ fn flexible(weave: &Weave, ask: &Ask) -> Flexible {
     }
 }
 
-/// The n x n window, as if its spec had been read; the pitch does not matter to a verdict.
-fn window(weave: &Weave, ask: &Ask, n: u32) -> Spec {
-    let layout = Layout::Swatch { wefts: n, warps: n, cut: Cut::Window, repeat: 1, phase: 0 };
+/// The n x n swatch at phase 0, as if its spec had been read; the pitch does not matter to a verdict.
+pub(super) fn swatch(weave: &Weave, ask: &Ask, cut: Cut, repeat: u32) -> Spec {
+    let n = weave.tile.0;
+    let layout = Layout::Swatch { wefts: n, warps: n, cut, repeat, phase: 0 };
     let (weave, profile) = (weave.clone(), ask.settings.profile());
     let subject = Subject::Woven(WovenSpec { weave, profile, layout, held: HeldSpec::None, pitch_mm: 1.0 });
-    Spec { name: "window".into(), subject, fab: None, file: PathBuf::new(), places: Places::default() }
-}
-
-/// The column is there, so that tables keep their shape when the question can be asked.
-fn release() -> Release {
-    Release { status: Status::NotRun, low: None, high: None, why: "the atlas does not ask this yet".into() }
+    Spec { name: "swatch".into(), subject, fab: None, file: PathBuf::new(), places: Places::default() }
 }

@@ -19,6 +19,8 @@ pub struct Ask {
     pub phases: Phases,
     /// Largest a + b for which flexible parts are looked for.
     pub flex_up_to: u32,
+    /// Largest a + b for which release clearance is looked for.
+    pub release_up_to: u32,
     pub settings: Settings,
 }
 
@@ -38,6 +40,9 @@ pub const MOST: u32 = 4;
 /// Largest n of the window whose flexible parts are looked for when nobody says: beyond, one row may take hours.
 pub const FLEX_UP_TO: u32 = 4;
 
+/// Largest n of the swatch whose release clearance is looked for when nobody says: a dozen plans each.
+pub const RELEASE_UP_TO: u32 = 3;
+
 impl Ask {
     /// The table up to `max_n` with the profile of the known answers.
     pub fn new(max_n: u32) -> Ask {
@@ -47,6 +52,7 @@ impl Ask {
             most: MOST,
             phases: Phases::All,
             flex_up_to: FLEX_UP_TO,
+            release_up_to: RELEASE_UP_TO,
             settings: Settings::default(),
         }
     }

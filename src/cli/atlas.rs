@@ -4,7 +4,10 @@
 
 use super::args::Common;
 use super::told::{News, Told, Trouble};
-use crate::atlas::{self, Ask, FLEX_UP_TO, MOST, Phases, Progress, Row, Settings, Shard, Which, Written};
+use crate::atlas::{
+    self, Ask, FLEX_UP_TO, MOST, Phases, Progress, RELEASE_UP_TO, Release, Row, Settings, Shard, Which,
+    Written,
+};
 use crate::chirality::answer::Handedness;
 use crate::report::content::{Chapter, Column, Table, Tone};
 use crate::spec;
@@ -27,7 +30,7 @@ pub struct Asked {
     #[arg(long, value_name = "I/M", value_parser = Shard::parse)]
     pub shard: Option<Shard>,
     /// Join the files (or folders) of shards into --out instead of working rows out
-    #[arg(long, value_name = "FILES", num_args = 1.., conflicts_with_all = ["shard", "max_n", "every", "most", "phases", "flex_up_to", "rise", "lift", "cover", "samples"])]
+    #[arg(long, value_name = "FILES", num_args = 1.., conflicts_with_all = ["shard", "max_n", "every", "most", "phases", "flex_up_to", "release_up_to", "rise", "lift", "cover", "samples"])]
     pub merge: Vec<PathBuf>,
     /// A row for every `[a,b,c]`, not only one for all names of a cloth
     #[arg(long)]
@@ -41,6 +44,9 @@ pub struct Asked {
     /// Look for flexible parts where a + b is at most this; a row takes minutes from 5 on
     #[arg(long, value_name = "N", default_value_t = FLEX_UP_TO, value_parser = clap::value_parser!(u32).range(0..=64))]
     pub flex_up_to: u32,
+    /// Look for release clearance where a + b is at most this
+    #[arg(long, value_name = "N", default_value_t = RELEASE_UP_TO, value_parser = clap::value_parser!(u32).range(0..=64))]
+    pub release_up_to: u32,
     /// Profile, as in a spec's `[profile]`
     #[arg(long, default_value_t = Settings::default().rise)]
     pub rise: f64,
@@ -71,6 +77,7 @@ impl Asked {
             most: self.most,
             phases: if self.phases == Cuts::All { Phases::All } else { Phases::First },
             flex_up_to: self.flex_up_to,
+            release_up_to: self.release_up_to,
             settings,
         })
     }
@@ -112,11 +119,13 @@ fn chapter(written: &Written) -> Chapter {
             hand(r.assembly),
             phases.join(" "),
             r.flexible.minimum.map_or(r.flexible.status.word().into(), |k| k.to_string()),
+            between(&r.release_clearance),
         ]
     };
     let table = Table {
-        caption: "Swatch n x n; - none found, ? undecided. Release clearance: not run".into(),
-        head: ["weave", "family", "tile", "warp is", "weave's", "least k by phase", "flexible"]
+        caption: "Swatch n x n; - none found, ? undecided. Clearance that opens it, in crossings: not found to find with the first, \
+                  found with the second".into(),
+        head: ["weave", "family", "tile", "warp is", "weave's", "least k by phase", "flexible", "opens between"]
             .map(Column::words)
             .to_vec(),
         rows: written.rows.iter().map(row).collect(),
@@ -125,6 +134,14 @@ fn chapter(written: &Written) -> Chapter {
         format!("{} weaves, {} of them found there from before.", written.rows.len(), written.found);
     let words = written.files.iter().map(|f| f.display().to_string()).collect();
     Chapter { tone: Tone::Plain, headline, words, tables: vec![table], ..Chapter::default() }
+}
+
+fn between(r: &Release) -> String {
+    match (r.low, r.high) {
+        (Some(low), Some(high)) => format!("{low:.4} and {high:.4}"),
+        (Some(low), None) => format!("over {low:.4}, if at all"),
+        _ => r.status.word().into(),
+    }
 }
 
 /// Shows how far a run is: a bar on a terminal, else a line from time to time.

@@ -131,7 +131,7 @@ fn words(a: &FlexAnswer) -> Vec<String> {
     if let Some(first) = a.orbits.first().filter(|o| !o.set.is_empty()) {
         let parts = a.symmetries.first().map_or(0, |s| s.to.len());
         words.push(format!(
-            "Make {} flexible (cast in silicone, say); the other {} go together rigid in {} straight moves, and the \
+            "Make {} flexible (cast in silicone, say); the other {} go together rigid in {} moves, and the \
              flexible ones are bent in whenever they fit.",
             first.set.join(" and "),
             parts.saturating_sub(first.set.len()),
@@ -139,13 +139,17 @@ fn words(a: &FlexAnswer) -> Vec<String> {
         ));
     }
     if let Some(core) = a.cores.first() {
+        let few = match a.lower_bound {
+            0 | 1 => String::new(),
+            2 => ", and no single part lies in all of them".to_string(),
+            n => format!(", and no {} parts meet them all", n - 1),
+        };
         words.push(format!(
             "Why no fewer: {} sub-assemblies are locked by themselves, such as {} ({} contact forces in balance). One part \
-             of each must bend, and no {} parts meet them all.",
+             of each must bend{few}.",
             a.cores.len(),
             core.parts.join(", "),
             core.certificate.forces.len(),
-            a.lower_bound.saturating_sub(1)
         ));
     }
     if !a.unproven.is_empty() {

@@ -8,15 +8,13 @@ use super::questions::{locked, planned, planned_by};
 use super::told::{News, Told, Trouble};
 use super::words::fact;
 use crate::assembly::PartIx;
-use crate::blocking::bounds;
-use crate::release::{At, Range, bracket};
+use crate::release::{At, bracket, range};
 use crate::report::answer::{
     self, BracketAnswer, Length, PlanAnswer, ProcessRelease, ReleaseAnswer, ReleaseWord, Sealed,
 };
 use crate::report::content::{Chapter, Column, Table, Tone};
 use crate::sequence::clearance::with_clearance;
 use crate::sequence::{Motions, Outcome};
-use crate::solid::Solid;
 use crate::verify;
 use crate::watch::{All, Watch};
 use clap::Args;
@@ -81,18 +79,11 @@ const MOTIONS: [(Motions, &str); 2] = [
     (Motions::Any, "straight moves, stops half way, turns, several at once"),
 ];
 
-/// Clearances from this share of the smallest part's box diagonal on are tried, doubled while nothing comes apart.
-const START_SHARE: f64 = 1.0 / 256.0;
-/// A hundredth of a millimetre on a part of 160 mm: nobody makes less.
-const LEAST_SHARE: f64 = 1.0 / 16384.0;
-
 fn searched(placed: &Placed, all: &[PartIx], motions: Motions) -> crate::release::Bracket<PlanAnswer> {
     let (asm, patches) = (&placed.joined.assembly, &placed.joined.patches);
-    let size = asm.ids().map(|p| diagonal(asm.solid(p))).fold(f64::INFINITY, f64::min);
-    let range = Range { start: size * START_SHARE, least: size * LEAST_SHARE, most: size / 2.0 };
     let stage = placed.watch.stage("clearances", "", All::Open);
     let tried = std::cell::Cell::new(0);
-    bracket(range, |clearance| {
+    bracket(range(asm), |clearance| {
         tried.set(tried.get() + 1);
         stage.reach(tried.get());
         let mm = clearance * asm.mm_per_unit;
@@ -116,11 +107,6 @@ fn searched(placed: &Placed, all: &[PartIx], motions: Motions) -> crate::release
             Err(why) => At::NotFound(format!("a plan was found, but not confirmed: {why}")),
         }
     })
-}
-
-fn diagonal(solid: &Solid) -> f64 {
-    let (lo, hi) = bounds(solid.vertices.iter().copied());
-    (hi - lo).length()
 }
 
 fn left(plan: &PlanAnswer) -> String {

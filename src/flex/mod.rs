@@ -1,6 +1,8 @@
 //! Takes an assembly and its contacts; gives the fewest parts that must be flexible, all such sets up to symmetry, and
 //! the bound's proof.
 //!
+//! Plans are by straight moves, or along the axes of the parts' lattice where they lie on one.
+//!
 //! The lower bound is proven: each core is locked by itself, whatever the files' digits leave open, so a flexible part must lie in it, and the smallest set that
 //! meets all cores is found by exhaustion. The upper side is as good as the planner: where a set stays together without
 //! being locked, the two need not meet, and the gap is stated. With a clearance nothing is locked to first order and the

@@ -10,7 +10,7 @@ use crate::assembly::{Assembly, PartIx};
 use crate::contact::{Patch, Touching};
 use crate::cores::{self, Contacts, Core, Firm, Guard, Set};
 use crate::sequence::clearance::with_clearance;
-use crate::sequence::{self, Motions, Plan};
+use crate::sequence::{self, Motions, Plan, lattice};
 use crate::watch::{All, Stage, Watch};
 use std::collections::{BTreeMap, BTreeSet};
 use std::time::Instant;
@@ -20,6 +20,9 @@ const NODES: usize = 1 << 20;
 
 /// Candidates of one round; with more the list would tell nobody anything.
 const MOST_CANDIDATES: usize = 4096;
+
+/// Positions that are looked at where straight moves fail and the parts lie on a lattice: a second or so.
+const MOST_POSITIONS: usize = 100_000;
 
 pub struct Search<'a> {
     contacts: Contacts<'a>,
@@ -125,7 +128,7 @@ impl<'a> Search<'a> {
     fn any(&mut self, mut flexible: Set) -> Result<usize, NoFlex> {
         loop {
             let rest = self.rest(&flexible);
-            let plan = self.made(&rest)?;
+            let plan = self.taken_apart(&rest)?;
             if plan.stuck.is_empty() {
                 let size = flexible.len();
                 self.keep(flexible, plan);
@@ -193,12 +196,32 @@ impl<'a> Search<'a> {
     fn plan(&mut self, parts: &[PartIx]) -> Result<Plan<()>, NoFlex> {
         let set: Set = parts.iter().copied().collect();
         self.contacts.pay(set.len(), self.contacts.patches_among(&set));
-        self.made(parts)
+        self.taken_apart(parts)
     }
 
-    fn made(&self, parts: &[PartIx]) -> Result<Plan<()>, NoFlex> {
+    /// By straight moves, or else on the parts' lattice, if they have one.
+    fn taken_apart(&self, parts: &[PartIx]) -> Result<Plan<()>, NoFlex> {
         let (asm, watch) = (&self.planned, self.watch.unseen());
-        Ok(sequence::plan_watched(asm, parts, self.patches(), Motions::Straight, &watch, |_| None)?)
+        let straight =
+            sequence::plan_watched(asm, parts, self.patches(), Motions::Straight, &watch, |_| None)?;
+        if straight.stuck.is_empty() || straight.stopped {
+            return Ok(straight);
+        }
+        // What comes apart as it touches does so with air between, too.
+        let asked = lattice::answer::Asked {
+            asm: self.contacts.touching.assembly,
+            parts,
+            step: None,
+            weight: |_| 1,
+            most: Some(MOST_POSITIONS),
+            watch: &watch,
+        };
+        let found = lattice::answer::plan(&asked, |_| None);
+        let positions = found.as_ref().ok().and_then(|p| p.counted.as_ref()).map_or(0, |c| c.positions);
+        self.contacts.pay(0, positions);
+        let stopped = self.watch.is_stopped();
+        let whole = found.ok().filter(|p| p.stuck.is_empty());
+        Ok(whole.map_or(Plan { stopped, ..straight }, |p| Plan { counted: None, ..p }))
     }
 
     /// Disjoint minimal cores within a set, with their images; true where there is one. What is locked as written and not

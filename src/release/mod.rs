@@ -4,6 +4,9 @@
 //! plan stays one at any larger clearance: what the ends say does not depend on what was tried between. The lower end
 //! is only as good as its evidence: that nothing was *found* there is no proof of anything.
 
+use crate::assembly::Assembly;
+use crate::blocking::bounds;
+
 /// What was found at one clearance.
 #[derive(Clone, Debug)]
 pub enum At<P> {
@@ -51,6 +54,21 @@ pub struct Range {
     /// Below this nothing is tried: finer than any workshop's clearance.
     pub least: f64,
     pub most: f64,
+}
+
+/// Clearances from this share of the smallest part's box diagonal on are tried, doubled while nothing comes apart.
+const START_SHARE: f64 = 1.0 / 256.0;
+/// A hundredth of a millimetre on a part of 160 mm: nobody makes less.
+const LEAST_SHARE: f64 = 1.0 / 16384.0;
+
+/// Where the clearance that releases these parts is looked for, model units.
+pub fn range(asm: &Assembly) -> Range {
+    let diagonal = |p| {
+        let (lo, hi) = bounds(asm.solid(p).vertices.iter().copied());
+        (hi - lo).length()
+    };
+    let size = asm.ids().map(diagonal).fold(f64::INFINITY, f64::min);
+    Range { start: size * START_SHARE, least: size * LEAST_SHARE, most: size / 2.0 }
 }
 
 /// `hi` is narrowed until it is at most this times `lo`: a sixteenth, finer than clearances are made.

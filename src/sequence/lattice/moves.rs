@@ -10,7 +10,7 @@ use super::pairs::FREE;
 use std::collections::BTreeSet;
 
 /// Set of parts of a state, one bit for each.
-pub type Mask = u64;
+pub type Mask = u128;
 
 /// Most parts in one state.
 pub const MOST_PARTS: usize = Mask::BITS as usize;
