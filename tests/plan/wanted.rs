@@ -71,7 +71,7 @@ fn a_beam_rests_on_two_posts_and_not_on_one() {
     assert!(found.judged.count(Wish::Air) > Some(0), "the second post stands on nothing");
 }
 
-/// A wall that leans on nothing falls: a contact on its side alone bears no weight.
+/// A contact on its side alone bears no weight: hands lift the shelf, which is one of three units of volume, at its middle.
 #[test]
 fn a_part_beside_another_in_the_air_does_not_rest() {
     let made = assembly(vec![
@@ -80,7 +80,7 @@ fn a_part_beside_another_in_the_air_does_not_rest() {
     ]);
     let (_, found) = preferred(&made, &ask(&[]));
     assert!(matches!(&found.judged.rests[0], Rest::Held { parts, share }
-        if parts == &[PartIx(1)] && *share > 0.49));
+        if parts == &[PartIx(1)] && (share - 1.0 / 3.0).abs() < 1e-6));
 }
 
 #[test]
