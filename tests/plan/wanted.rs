@@ -100,6 +100,23 @@ fn the_ranking_decides_between_a_flexible_part_and_one_in_the_air() {
     assert_eq!(found.alone[at], Some(0), "what the ranking costs it is told");
 }
 
+/// A rail that slides out at either end of its groove comes from above, whichever end that is.
+#[test]
+fn a_single_step_comes_from_the_better_side() {
+    let groove = vec![
+        cuboid([0., 0., 0.], [3., 4., 1.]),
+        cuboid([0., 0., 1.], [1., 4., 2.]),
+        cuboid([2., 0., 1.], [3., 4., 2.]),
+        cuboid([0., 0., 2.], [3., 4., 3.]),
+    ];
+    let made = assembly(vec![("groove", groove), ("rail", vec![cuboid([1., 0., 1.], [2., 4., 2.])])]);
+    for up in [DVec3::Y, DVec3::NEG_Y] {
+        let (_, found) = preferred(&made, &Ask { up, ..ask(&[Wish::Above]) });
+        assert_eq!((found.judged.count(Wish::Above), found.judged.from_above), (Some(0), 1), "up is {up}");
+        assert_eq!(found.judged.through_table, 0, "up is {up}");
+    }
+}
+
 /// A drawer in a case open at one side comes sideways, whatever is wished.
 #[test]
 fn what_cannot_be_met_is_said() {
