@@ -103,7 +103,9 @@ pub fn line(seen: &[Seen], so_far: Duration, on_stage: Duration) -> String {
         (unit, All::AtMost(most)) => format!("{}, {} of up to {most} {unit}", s.what, s.done),
     };
     let stages: Vec<String> = seen.iter().map(told).collect();
-    let left = counting(seen).and_then(|s| left(s, on_stage)).unwrap_or_default();
+    // A pace of an outer stage says nothing of what runs within it uncounted.
+    let last = counting(seen).filter(|s| seen.last() == Some(s));
+    let left = last.and_then(|s| left(s, on_stage)).unwrap_or_default();
     let times = format!("; {}{left}", time(so_far));
     let room = MOST_LETTERS.saturating_sub(times.chars().count());
     short(stages, room) + &times

@@ -173,7 +173,7 @@ impl<'s, 'a> Shop<'s, 'a> {
         let (mut out, mut at) = (Vec::new(), 0);
         while at < steps.len() {
             let end = self.run_from(steps, at);
-            if end - at < 2 {
+            if end == at {
                 out.push(steps[at].clone());
                 at += 1;
                 continue;
