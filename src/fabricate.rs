@@ -7,6 +7,7 @@ use crate::assembly::{Assembly, PartIx};
 use crate::contact::{Joined, Origin, Patch};
 use crate::solid::{Facet, Solid};
 use glam::{DAffine3, DVec3};
+use weavelock_fab::mesh::Mesh;
 use weavelock_fab::shape::{self, Job, PlacedPart, Role, Shape};
 
 pub fn job(joined: &Joined) -> Job {
@@ -18,6 +19,15 @@ pub fn job(joined: &Joined) -> Job {
         PlacedPart { id: asm.part(p).id.clone(), shape: asm.part(p).solid, pose: mm, roles: roles(joined, p) }
     };
     Job { name: asm.name.clone(), shapes, parts: asm.ids().map(part).collect() }
+}
+
+/// The parts as they touch, in place, in mm.
+pub fn meshes(asm: &Assembly) -> Vec<Mesh> {
+    let mesh = |p: PartIx| {
+        let vertices = asm.vertices(p).map(|v| v * asm.mm_per_unit).collect();
+        Mesh { vertices, triangles: asm.solid(p).triangles().collect() }
+    };
+    asm.ids().map(mesh).collect()
 }
 
 fn shape(solid: &Solid, mm: f64) -> Shape {

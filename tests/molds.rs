@@ -2,6 +2,8 @@
 
 #[path = "molds/second_kernel.rs"]
 mod second_kernel;
+#[path = "molds/whole.rs"]
+mod whole;
 
 use glam::DVec3;
 use std::path::{Path, PathBuf};

@@ -46,13 +46,15 @@ pub struct Recipe {
 }
 
 /// What forms the cavity of a mold.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub enum Cavity {
     /// The part itself, with its clearance.
     #[default]
     Part,
-    /// The hollow that the parts around it leave (paper, 4.3): it reaches up to them, so the casting has no clearance.
-    Surroundings,
+    /// The hollow that the solids around it leave (paper, 4.3): it reaches up to them, so the casting has no clearance.
+    /// They are the other parts of the job, and these: in place, in mm, as they touch. Where there are any of these, all
+    /// together fill space, and the hollow is the part as it touches.
+    Surroundings(Vec<Mesh>),
 }
 
 impl Recipe {

@@ -2,6 +2,7 @@
 //!
 //! Promised: part ids are unique and in the order of the file. Not promised: that parts touch, or that a swatch locks.
 
+pub mod around;
 pub mod layout;
 pub mod mesh;
 pub mod read;

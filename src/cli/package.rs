@@ -7,11 +7,15 @@ use super::load::Placed;
 use super::make::{self, Checkers, Wish};
 use super::pictured;
 use super::told::{News, Told, Trouble};
+use crate::assembly;
+use crate::contact::Origin;
 use crate::fabricate;
 use crate::report::content::{Chapter, Column, Table};
+use crate::spec::Subject;
 use serde::Serialize;
 use std::path::Path;
 use weavelock_fab::make::{Cavity, Recipe};
+use weavelock_fab::mesh::Mesh;
 use weavelock_fab::package::{self, Order, PackageReport, Replace};
 use weavelock_fab::process::{self, Measured, Overrides, Process};
 use weavelock_fab::report::Severity;
@@ -25,8 +29,9 @@ struct PackageAnswer<'a> {
 }
 
 pub fn fab(placed: &Placed, asked: &Fab, common: &Common) -> Result<Told, Trouble> {
+    let cavity = if asked.direct { Cavity::Surroundings(around(placed)?) } else { Cavity::Part };
     let recipe = Recipe {
-        cavity: if asked.direct { Cavity::Surroundings } else { Cavity::Part },
+        cavity,
         gang: asked.gang.into(),
         ..make::recipe(placed, &wish(asked)?, Checkers::of(asked.check))?
     };
@@ -39,6 +44,15 @@ pub fn fab(placed: &Placed, asked: &Fab, common: &Common) -> Result<Told, Troubl
     let mut package = made.map_err(|e| Trouble::Word(format!("error: {e}")))?;
     placed_in(&mut package, &asked.out);
     Ok(told(&package, &asked.out))
+}
+
+/// Of a woven assembly the cells of the weave beyond its parts; of meshes nothing.
+fn around(placed: &Placed) -> Result<Vec<Mesh>, Trouble> {
+    let (Subject::Woven(spec), Origin::Woven(woven)) = (&placed.spec.subject, &placed.joined.origin) else {
+        return Ok(vec![]);
+    };
+    let cells = assembly::around::cells(&placed.spec, spec, &woven.pieces)?;
+    Ok(cells.map_or(vec![], |cells| fabricate::meshes(&cells)))
 }
 
 /// The package of a run, as the spec says; files of an earlier run give way.

@@ -2,6 +2,7 @@
 //!
 //! Slow: its kernel takes seconds over each half. Where it is not installed, a word is printed and nothing is shown.
 
+use super::whole::lone_spec;
 use super::{angle, bobbin, bracket, holed, scratch, solid, spec, wavy, written};
 use glam::DVec3;
 use std::process::Command;
@@ -24,10 +25,7 @@ fn tee() -> Mesh {
 fn lone(abc: &str, n: usize) -> Mesh {
     let dir = scratch(&format!("lone-{n}"));
     std::fs::create_dir_all(&dir).unwrap();
-    let text = format!(
-        "name = \"lone\"\n[weave]\nabc = [{abc}]\n[profile]\nrise = 0.6\nlift = 1.0\ncover = 1.0\nsamples = 8\n[[piece]]\nweft = 0\nfrom = 0\nto = {n}\n[size]\npitch = \"20 mm\"\n"
-    );
-    std::fs::write(dir.join("lone.toml"), text).unwrap();
+    std::fs::write(dir.join("lone.toml"), lone_spec(abc, n, "fdm-pla")).unwrap();
     let mut program = Command::new(env!("CARGO_BIN_EXE_weavelock"));
     let out = program.current_dir(&dir).args(["export", "lone.toml", "--as", "stl", "--out", "out"]).output();
     let file = dir.join("out").join("weft-0.mm.stl");

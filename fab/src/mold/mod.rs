@@ -24,7 +24,7 @@ mod rigid;
 mod scad;
 pub mod shadow;
 mod silicone;
-mod surroundings;
+pub mod surroundings;
 pub mod sweep;
 pub mod tops;
 mod tree;

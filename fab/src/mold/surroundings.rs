@@ -18,6 +18,20 @@ const OPEN_SHARE: f64 = 0.25;
 /// hollow runs between them. A hundredth of what any process makes.
 const SAME: f64 = 1e-4;
 
+/// What cells that fill space with a cavity share with it, against round-off of their places. Such cells leave just the
+/// cavity, so that it need not be cut out of them; they only have to stand where they should.
+pub fn shared(cavity: &Mesh, cells: &[Mesh]) -> Result<Measured, MoldError> {
+    let around = cells.iter().map(Solid::of).collect::<Result<Vec<_>, _>>()?;
+    let inside = Solid::all(around).common(&Solid::of(cavity)?).volume();
+    Ok(Measured::at_most(
+        "what the cells around the cavity share with it",
+        inside,
+        SAME * cavity.area(),
+        "mm3",
+        "round-off of their places: surface times 0.0001 mm",
+    ))
+}
+
 pub fn hollow(part: &Mesh, surroundings: &[Mesh]) -> Result<(Mesh, Measured), MoldError> {
     let solid = Solid::of(part)?;
     let mut surroundings = surroundings.to_vec();

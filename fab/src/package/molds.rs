@@ -74,7 +74,7 @@ pub fn molds(
             let spec = MoldSpec { count, ..MoldSpec::new(&name, wanted, figures.clone()) };
             let mut batch = Batch::new(&place)?;
             let write = |mold: Mold| mold::write(&mold, &mut batch).map(|report| (mold, report));
-            match made((job, output), p, &spec, recipe.cavity).map(|m| m.and_then(write)) {
+            match made((job, output), p, &spec, &recipe.cavity).map(|m| m.and_then(write)) {
                 Some(Ok((mold, mut report))) => {
                     batch.commit()?;
                     printed.extend(prints_of(mold, &part.process));
@@ -103,18 +103,23 @@ fn made(
     (job, output): (&Job, &Output),
     p: usize,
     spec: &MoldSpec,
-    cavity: Cavity,
+    cavity: &Cavity,
 ) -> Option<Result<Mold, MoldError>> {
     let master = output.masters[p].as_ref()?;
-    if cavity == Cavity::Part || spec.route == mold::Route::LostWax {
-        return Some(mold::make(master, spec));
-    }
+    let others = match cavity {
+        Cavity::Surroundings(others) if spec.route != mold::Route::LostWax => others,
+        _ => return Some(mold::make(master, spec)),
+    };
     let same = (p..output.masters.len()).filter(|&q| kind_of(output, q) == p);
     let mut refused = None;
     for q in same {
         let Some(part) = &output.masters[q] else { continue };
-        let order = MoldSpec { surroundings: around((job, output), q, part), ..spec.clone() };
-        match mold::make(part, &order) {
+        let near = around((job, output), q, part, others);
+        let tried = match others.is_empty() {
+            true => mold::make(part, &MoldSpec { surroundings: near, ..spec.clone() }),
+            false => among_cells(&nominal((job, output), q, q), &near, spec),
+        };
+        match tried {
             Ok(mut mold) => {
                 mold.findings.push(no_clearance(&output.report.parts[q].id));
                 return Some(Ok(mold));
@@ -123,6 +128,20 @@ fn made(
         }
     }
     refused.map(Err)
+}
+
+/// The mold of a part as it touches, whose faces the cells around it share.
+fn among_cells(part: &Mesh, cells: &[Mesh], spec: &MoldSpec) -> Result<Mold, MoldError> {
+    let shared = mold::surroundings::shared(part, cells)?;
+    let mut mold = mold::make(part, spec)?;
+    if !shared.kept {
+        let what = format!("the cells around it share {:.4} mm3 with the cavity", shared.value);
+        let place = Place { parts: vec![spec.name.clone()], at: vec![] };
+        let remedy = "let the part itself form the cavity, and report this with the input".into();
+        mold.findings.push(Finding { severity: Severity::Error, place, what, remedy });
+    }
+    mold.measured.push(shared);
+    Ok(mold)
 }
 
 fn no_clearance(id: &str) -> Finding {
@@ -136,22 +155,30 @@ fn no_clearance(id: &str) -> Finding {
     }
 }
 
-/// The parts near a part as they touch, without clearance, brought to its scale: with clearance there would be cracks
+/// The parts and `others` near a part as they touch, without clearance, brought to its scale: with clearance there would be cracks
 /// between them.
-fn around((job, output): (&Job, &Output), q: usize, part: &Mesh) -> Vec<Mesh> {
-    let (scale, datum) = (output.report.parts[q].scale, output.report.datum);
+fn around((job, output): (&Job, &Output), q: usize, part: &Mesh, others: &[Mesh]) -> Vec<Mesh> {
     let (lo, hi) = part.bounds();
     let near = |m: &Mesh| {
         let (l, h) = m.bounds();
         l.cmple(hi).all() && lo.cmple(h).all()
     };
-    let nominal = |r: usize| {
-        let (shape, pose) = (&job.shapes[job.parts[r].shape], job.parts[r].pose);
-        let triangles = shape.facets.iter().flat_map(|f| triangulate(&shape.vertices, f)).collect();
-        let place = |v: &DVec3| datum + (pose.transform_point3(*v) - datum) * scale;
-        Mesh { vertices: shape.vertices.iter().map(place).collect(), triangles }
-    };
-    (0..job.parts.len()).filter(|&r| r != q).map(nominal).filter(near).collect()
+    let parts = (0..job.parts.len()).filter(|&r| r != q).map(|r| nominal((job, output), r, q));
+    let beyond = others.iter().map(|m| m.map(|v| scaled(output, q, v)));
+    parts.chain(beyond).filter(near).collect()
+}
+
+/// A part as it touches, in place, at the scale of part `q`.
+fn nominal((job, output): (&Job, &Output), r: usize, q: usize) -> Mesh {
+    let (shape, pose) = (&job.shapes[job.parts[r].shape], job.parts[r].pose);
+    let triangles = shape.facets.iter().flat_map(|f| triangulate(&shape.vertices, f)).collect();
+    let place = |v: &DVec3| scaled(output, q, pose.transform_point3(*v));
+    Mesh { vertices: shape.vertices.iter().map(place).collect(), triangles }
+}
+
+fn scaled(output: &Output, q: usize, at: DVec3) -> DVec3 {
+    let datum = output.report.datum;
+    datum + (at - datum) * output.report.parts[q].scale
 }
 
 /// What of a mold comes from the printer.

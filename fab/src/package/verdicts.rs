@@ -24,12 +24,7 @@ pub fn ask(package: &mut PackageReport, recipe: &Recipe, folder: &Path) {
     let routes: Vec<Process> = package.report.routes.iter().map(|r| r.process.clone()).collect();
     for plate in &mut package.plates {
         let file = folder.join(&plate.file);
-        plate.checks.push(slicer::bodies(
-            &programs.slicer,
-            &name,
-            &file,
-            plate.shown.iter().map(of).sum(),
-        ));
+        plate.checks.push(slicer::bodies(&programs.slicer, &name, &file, plate.shown.iter().map(of).sum()));
         let Some(process) = routes.iter().find(|p| p.name == plate.process) else { continue };
         if process.print.material == RESIN {
             let why = "resin is sliced by the machine's own program".to_string();
