@@ -246,7 +246,7 @@ pub fn bare(exhibits: Vec<weavelock::report::viewer::Exhibit>, pictures: Vec<Pic
 /// Steps of all kinds: single parts up, one by a screw, two at once. Only to be shown; nothing says that it can be done.
 pub fn shown_plan(joined: &Joined) -> Value {
     let ids: Vec<&str> = joined.assembly.parts.iter().map(|p| p.id.as_str()).collect();
-    let up = |k: usize| json!({"parts": [ids[k]], "kind": "translation", "direction": [0.0, 0.6, 0.8], "distance": 3.0 + k as f64, "clear": 0.0, "stays": &ids[k + 1..]});
+    let up = |k: usize| json!({"parts": [ids[k]], "kind": "translation", "direction": [0.0, 0.6, 0.8], "distance": 3.0 + (k % 7) as f64, "clear": 0.0, "stays": &ids[k + 1..]});
     let mut steps: Vec<Value> = (0..ids.len() - 3).map(up).collect();
     let [a, b, c] = [ids[ids.len() - 3], ids[ids.len() - 2], ids[ids.len() - 1]];
     steps.push(json!({"parts": [a], "kind": "screw", "point": [1.0, 2.0, 0.0], "axis": [0.0, 0.6, 0.8], "angle": 2.5, "advance": 1.5, "ends": "inside", "clear": 0.0, "stays": [b, c]}));

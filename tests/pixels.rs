@@ -52,6 +52,7 @@ impl Camera {
     /// Column, row and nearness (1 over the distance along the view) of a point about the scene's middle.
     fn project(&self, p: DVec3) -> DVec3 {
         let q: DVec4 = self.see * p.extend(1.0);
+        assert!(q.w > 0.0, "a corner behind the eye: this rasteriser cuts nothing off");
         let (x, y) = (q.x / q.w, q.y / q.w);
         DVec3::new((x + 1.0) / 2.0 * self.width as f64, (1.0 - y) / 2.0 * self.height as f64, 1.0 / q.w)
     }
@@ -269,19 +270,19 @@ fn as_meant(wefts: u32, warps: u32, after: &[f64], closer: &[f64]) {
 
 #[test]
 fn pixels_of_twenty_parts_are_as_meant() {
-    as_meant(2, 10, &[0.0, 1.0, 3.5, 17.0, 18.5, 19.0], &[4.0]);
+    as_meant(2, 10, &[0.0, 1.0, 3.5, 17.0, 18.5, 19.0], &[3.0]);
 }
 
 #[test]
 #[ignore = "ten seconds of software WebGL"]
 fn pixels_of_two_hundred_parts_are_as_meant() {
-    as_meant(10, 20, &[0.0, 1.5, 199.0], &[6.0]);
+    as_meant(10, 20, &[0.0, 1.5, 100.0, 199.0], &[3.0]);
 }
 
 #[test]
 #[ignore = "half a minute of software WebGL"]
 fn pixels_of_two_thousand_parts_are_as_meant() {
-    as_meant(40, 50, &[0.0, 1.5, 1999.0], &[12.0]);
+    as_meant(40, 50, &[0.0, 1.5, 1000.0], &[3.0]);
 }
 
 #[test]

@@ -104,7 +104,7 @@ pub fn exhibits(placed: &Placed, part: PartIx, route: MoldRoute) -> Result<(Vec<
 const MOST_SHAPES: usize = 3;
 
 /// The molds of what is cast, one for each shape: exhibits for the page, and what is said of them; `None`: nothing is cast.
-pub fn of_cast(placed: &Placed, made: &Report) -> Result<(Vec<Exhibit>, Option<Chapter>), Trouble> {
+pub fn of_cast(placed: &Placed, made: &Report) -> (Vec<Exhibit>, Option<Chapter>) {
     let asm = &placed.joined.assembly;
     let cast = made.routes.iter().filter_map(|r| Some((r, by_process(r.process.route)?)));
     let mut shapes: BTreeMap<usize, (PartIx, MoldRoute)> = BTreeMap::new();
@@ -115,11 +115,21 @@ pub fn of_cast(placed: &Placed, made: &Report) -> Result<(Vec<Exhibit>, Option<C
     }
     let (mut shown, mut chapters) = (vec![], vec![]);
     for (part, route) in shapes.values().take(MOST_SHAPES) {
-        let (exhibits, chapter) = exhibits(placed, *part, *route)?;
-        shown.extend(exhibits);
-        chapters.push(chapter);
+        match exhibits(placed, *part, *route) {
+            Ok((exhibits, chapter)) => {
+                shown.extend(exhibits);
+                chapters.push(chapter);
+            }
+            // A shape that no mold can be made of must not take the rest of the run with it.
+            Err(why) => chapters.push(Chapter {
+                tone: Tone::Bad,
+                headline: format!("No mold of {} was made.", asm.part(*part).id),
+                words: vec![why.to_string()],
+                ..Chapter::default()
+            }),
+        }
     }
-    Ok((shown, together(chapters, shapes.len())))
+    (shown, together(chapters, shapes.len()))
 }
 
 fn by_process(route: process::Route) -> Option<MoldRoute> {

@@ -200,7 +200,7 @@ fn everything(loaded: Loaded, out: &Path, common: &Common) -> Result<Told, Troub
     let parts = Answer::Given(make::fab_chapter(&made, &folder, &[]));
     let ledger = Answer::Given(make::ledger_chapter(&made));
     let mut input = input(&placed, &asked, as_made.as_ref(), parts, ledger);
-    let (exhibits, molds) = molded::of_cast(&placed, &made)?;
+    let (exhibits, molds) = molded::of_cast(&placed, &made);
     input.exhibits.extend(exhibits);
     input.molds = molds.map_or(input.molds, Answer::Given);
     keep("report.html", page(&input).as_bytes())?;
