@@ -15,15 +15,19 @@ use weavelock::assembly::PartIx;
 use weavelock::cli;
 use weavelock::contact::Joined;
 use weavelock::locking::{Freedom, rows};
+use weavelock::watch::Watch;
 
 /// How long an interrupt may wait to be seen.
 const LISTEN: Duration = Duration::from_millis(50);
 
-/// Runs a call on a thread of its own, without the interpreter's lock; signals are listened to meanwhile.
-fn beside<T: Send + 'static>(py: Python<'_>, call: impl FnOnce() -> T + Send + 'static) -> PyResult<T> {
+/// Runs a call on a thread of its own, without the interpreter's lock; signals are listened to meanwhile. An interrupt
+/// asks the call to stop; it ends at its next counted step.
+fn beside<T: Send + 'static>(py: Python<'_>, call: impl FnOnce(&Watch) -> T + Send + 'static) -> PyResult<T> {
     let (give, take) = channel();
     let take = Mutex::new(take);
-    std::thread::spawn(move || drop(give.send(call())));
+    let watch = Watch::default();
+    let watched = watch.clone();
+    std::thread::spawn(move || drop(give.send(call(&watched))));
     loop {
         let waited = py.detach(|| {
             let take = take.lock().map_err(|_| RecvTimeoutError::Disconnected)?;
@@ -31,7 +35,7 @@ fn beside<T: Send + 'static>(py: Python<'_>, call: impl FnOnce() -> T + Send + '
         });
         match waited {
             Ok(answer) => return Ok(answer),
-            Err(RecvTimeoutError::Timeout) => py.check_signals()?,
+            Err(RecvTimeoutError::Timeout) => py.check_signals().inspect_err(|_| watch.stop())?,
             Err(RecvTimeoutError::Disconnected) => {
                 return Err(PyRuntimeError::new_err("a fault of ours: the call ended without an answer"));
             }
@@ -42,12 +46,12 @@ fn beside<T: Send + 'static>(py: Python<'_>, call: impl FnOnce() -> T + Send + '
 /// What the program answers to these words: exit code, one JSON object, remarks. Bad input raises ValueError.
 #[pyfunction]
 fn ask(py: Python<'_>, words: Vec<String>) -> PyResult<(u8, String, Vec<String>)> {
-    let asked = beside(py, move || cli::answered(&words))?.map_err(PyValueError::new_err)?;
+    let asked = beside(py, move |watch| cli::answered(&words, watch))?.map_err(PyValueError::new_err)?;
     Ok((asked.code, asked.json, asked.remarks))
 }
 
 /// An assembly in place, in model units (crossings for woven tiles, the file's unit for meshes).
-#[pyclass(frozen)]
+#[pyclass(frozen, module = "weavelock")]
 struct Assembly {
     joined: Joined,
 }
@@ -55,7 +59,7 @@ struct Assembly {
 /// Reads a spec or puzzle file and finds its contacts.
 #[pyfunction]
 fn load(py: Python<'_>, file: PathBuf) -> PyResult<Assembly> {
-    let joined = beside(py, move || cli::joined(&file))?.map_err(PyValueError::new_err)?;
+    let joined = beside(py, move |watch| cli::joined(&file, watch))?.map_err(PyValueError::new_err)?;
     Ok(Assembly { joined })
 }
 

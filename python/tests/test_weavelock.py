@@ -106,6 +106,11 @@ def test_an_interrupt_is_heard():
         for _ in range(1000):
             weavelock.release(PLAIN)
     assert time.monotonic() - started < 5
+    # Nothing works on: the search ended at its next step.
+    time.sleep(2)
+    before = time.process_time()
+    time.sleep(1)
+    assert time.process_time() - before < 0.3
 
 
 def test_answers_are_those_of_the_program():

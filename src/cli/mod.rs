@@ -145,11 +145,11 @@ pub struct Answered {
 }
 
 /// The answer to these words (without the program's name). Bad input, or a fault of ours: what is wrong, in words.
-pub fn answered(words: &[String]) -> Result<Answered, String> {
+pub fn answered(words: &[String], watch: &Watch) -> Result<Answered, String> {
     let all =
         std::iter::once("weavelock").chain(words.iter().map(String::as_str)).chain(["--json", "--quiet"]);
     let args = <Args as clap::Parser>::try_parse_from(all).map_err(|e| e.render().to_string())?;
-    let told = guarded(|| dispatch(&args, &Watch::default())).map_err(|trouble| trouble.to_string())?;
+    let told = guarded(|| dispatch(&args, watch)).map_err(|trouble| trouble.to_string())?;
     let code = match told.news {
         News::Good => 0,
         News::Other => 1,
@@ -158,8 +158,8 @@ pub fn answered(words: &[String]) -> Result<Answered, String> {
 }
 
 /// The assembly of a spec or puzzle file, with its contacts.
-pub fn joined(file: &std::path::Path) -> Result<crate::contact::Joined, String> {
-    let placed = guarded(|| Ok(load::spec(file, &args::PuzzleArgs::default(), &Watch::default())?.joined()?));
+pub fn joined(file: &std::path::Path, watch: &Watch) -> Result<crate::contact::Joined, String> {
+    let placed = guarded(|| Ok(load::spec(file, &args::PuzzleArgs::default(), watch)?.joined()?));
     placed.map(|p| p.joined).map_err(|trouble| trouble.to_string())
 }
 
