@@ -195,9 +195,13 @@ fn tally(
     tally
 }
 
+/// Pixels of a part below which it is not judged: rounding may move an edge into the few of a part that is all but hidden.
+const FEW: usize = AROUND.len();
+
 /// Parts that do not look as meant: of the pixels compared, half or more are wrong.
 fn wrong(tally: &Tally) -> Vec<Option<usize>> {
-    tally.iter().filter(|(_, f)| 2 * f.right <= f.compared && f.compared > 0).map(|(k, _)| *k).collect()
+    let judged = tally.iter().filter(|(_, f)| f.compared >= FEW);
+    judged.filter(|(_, f)| 2 * f.right <= f.compared).map(|(k, _)| *k).collect()
 }
 
 /// The page at rest after `done` steps, compared with what was meant.
@@ -257,7 +261,7 @@ fn as_meant(wefts: u32, warps: u32, after: &[f64], closer: &[f64]) {
         browser.ask(&format!("weavelock.state.view.zoom = {zoom}; 0"));
         let found = looked_at(&mut browser, &joined, &exhibit, &plan, done);
         let (compared, right) = found.values().fold((0, 0), |(c, r), f| (c + f.compared, r + f.right));
-        let parts = found.values().filter(|f| f.compared > 0).count();
+        let parts = found.values().filter(|f| f.compared >= FEW).count();
         println!(
             "{} parts after {done} steps, {zoom} times as near: {right} of {compared} pixels as meant, {parts} parts compared",
             wefts * warps

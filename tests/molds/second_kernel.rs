@@ -3,23 +3,12 @@
 //! Slow: its kernel takes seconds over each half. Where it is not installed, a word is printed and nothing is shown.
 
 use super::whole::lone_spec;
-use super::{angle, bobbin, bracket, holed, scratch, solid, spec, wavy, written};
-use glam::DVec3;
+use super::{angle, bobbin, bracket, holed, scratch, spec, wavy, written};
 use std::process::Command;
 use weavelock_fab::check::Outcome;
 use weavelock_fab::files::stl;
 use weavelock_fab::mesh::Mesh;
 use weavelock_fab::mold::{Kind, Mold, MoldSpec, Route, check_openscad, make};
-use weavelock_fab::solid::frustum;
-
-/// A pipe with a branch, hollow all through: its bores meet in a curve, which leaves needles in every boolean of it.
-fn tee() -> Mesh {
-    let along = |r: f64, from: f64, to: f64| solid(&frustum(DVec3::Z * from, to - from, r, r));
-    let across =
-        |r: f64, to: f64| solid(&frustum(DVec3::ZERO, to, r, r).map(|v| DVec3::new(v.z, v.x, v.y + 20.0)));
-    let body = along(10.0, 0.0, 40.0).with(&across(8.0, 25.0));
-    body.minus(&along(6.0, -1.0, 41.0).with(&across(5.0, 26.0))).mesh()
-}
 
 /// One weft tile of a weave of period `n`, which stands alone: its faces are those that the weave gives, no clearance.
 fn lone(abc: &str, n: usize) -> Mesh {
@@ -68,7 +57,7 @@ fn openscad_makes_the_same_molds_of_plain_shapes() {
 #[test]
 #[ignore = "a minute: side cores are searched, and OpenSCAD makes them"]
 fn openscad_makes_the_same_side_cores() {
-    for (name, part) in [("scad-bobbin", bobbin()), ("scad-bracket", bracket()), ("scad-tee", tee())] {
+    for (name, part) in [("scad-bobbin", bobbin()), ("scad-bracket", bracket())] {
         let mold = make(&part, &spec(name, Route::Rigid)).unwrap();
         assert!(mold.pieces.iter().any(|p| p.kind == Kind::Core), "{name}");
         let passed = agreed(&mold);
