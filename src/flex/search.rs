@@ -128,7 +128,7 @@ impl<'a> Search<'a> {
     fn any(&mut self, mut flexible: Set) -> Result<usize, NoFlex> {
         loop {
             let rest = self.rest(&flexible);
-            let plan = self.made(&rest)?;
+            let plan = self.taken_apart(&rest)?;
             if plan.stuck.is_empty() {
                 let size = flexible.len();
                 self.keep(flexible, plan);
@@ -196,15 +196,15 @@ impl<'a> Search<'a> {
     fn plan(&mut self, parts: &[PartIx]) -> Result<Plan<()>, NoFlex> {
         let set: Set = parts.iter().copied().collect();
         self.contacts.pay(set.len(), self.contacts.patches_among(&set));
-        self.made(parts)
+        self.taken_apart(parts)
     }
 
     /// By straight moves, or else on the parts' lattice, if they have one.
-    fn made(&self, parts: &[PartIx]) -> Result<Plan<()>, NoFlex> {
+    fn taken_apart(&self, parts: &[PartIx]) -> Result<Plan<()>, NoFlex> {
         let (asm, watch) = (&self.planned, self.watch.unseen());
         let straight =
             sequence::plan_watched(asm, parts, self.patches(), Motions::Straight, &watch, |_| None)?;
-        if straight.stuck.is_empty() {
+        if straight.stuck.is_empty() || straight.stopped {
             return Ok(straight);
         }
         // What comes apart as it touches does so with air between, too.
@@ -219,7 +219,9 @@ impl<'a> Search<'a> {
         let found = lattice::answer::plan(&asked, |_| None);
         let positions = found.as_ref().ok().and_then(|p| p.counted.as_ref()).map_or(0, |c| c.positions);
         self.contacts.pay(0, positions);
-        Ok(found.ok().filter(|p| p.stuck.is_empty()).map_or(straight, |p| Plan { counted: None, ..p }))
+        let stopped = self.watch.is_stopped();
+        let whole = found.ok().filter(|p| p.stuck.is_empty());
+        Ok(whole.map_or(Plan { stopped, ..straight }, |p| Plan { counted: None, ..p }))
     }
 
     /// Disjoint minimal cores within a set, with their images; true where there is one. What is locked as written and not
