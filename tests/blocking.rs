@@ -11,9 +11,9 @@ use std::process::{Command, Output};
 use weavelock::assembly::{Assembly, PartIx};
 use weavelock::blocking::Touch;
 use weavelock::blocking::graph::{self, pairs};
-use weavelock::blocking::ndbg::{Ndbg, Reach, ndbg};
+use weavelock::blocking::ndbg::{Ndbg, Reach, Resolution, ndbg};
 use weavelock::blocking::shadow::{Shapes, View};
-use weavelock::contact::{Joined, Patch, join};
+use weavelock::contact::{Joined, Patch, Slack, Touching, join};
 use weavelock::report::answer::{self, Found};
 use weavelock::report::graphs::{self, Attributes, Graph, Node};
 use weavelock::solid::Cell;
@@ -89,7 +89,7 @@ impl Cubes {
     }
 
     fn ndbg(&self, reach: Reach) -> Ndbg {
-        ndbg(&self.asm, &self.patches, &pairs(&self.patches), reach).expect("an arrangement")
+        ndbg(Touching::exactly(&self.asm, &self.patches), reach).expect("an arrangement")
     }
 }
 
@@ -196,8 +196,7 @@ fn fixture(name: &str) -> (PathBuf, Joined) {
 
 fn found(name: &str, reach: Reach) -> (Joined, Ndbg) {
     let joined = fixture(name).1;
-    let found =
-        ndbg(&joined.assembly, &joined.patches, &pairs(&joined.patches), reach).expect("an arrangement");
+    let found = ndbg(joined.touching(), reach).expect("an arrangement");
     (joined, found)
 }
 
@@ -205,10 +204,21 @@ fn found(name: &str, reach: Reach) -> (Joined, Ndbg) {
 /// nothing: woven tiles and meshes, oblique and curved.
 #[test]
 fn regions_agree_with_sweeps() {
-    for name in
-        ["burr", "swirl", "dovetail-open", "taper-with-draft", "woven/basket-quarter", "woven/plain-unit-key"]
-    {
+    for name in [
+        "burr",
+        "swirl",
+        "dovetail-open",
+        "taper-with-draft",
+        "woven/basket-quarter",
+        "woven/plain-unit-key",
+        "woven/twill-unit",
+    ] {
         let (joined, found) = found(name, Reach::Finite);
+        assert!(
+            found.arrangement.merged < found.circles.resolution().plane(),
+            "{name}: {}",
+            found.arrangement.merged
+        );
         let asm = &joined.assembly;
         let (shapes, touch) = (Shapes::of(asm), Touch::of(asm));
         let held: BTreeSet<PartIx> = asm.held().collect();
@@ -229,6 +239,32 @@ fn regions_agree_with_sweeps() {
             }
         }
     }
+}
+
+/// Two planes between a pair, some ten millionths of a radian apart: along the lune between them each part stops the other. Where
+/// the file's digits leave that much open, they are one plane.
+#[test]
+fn planes_are_told_apart_as_far_as_the_digits_go() {
+    let owner = BTreeMap::from([([0, 0, 0], 0), ([0, 0, 1], 1)]);
+    let Cubes { asm, patches, .. } = cubes(owner, &[false, false], DQuat::from_rotation_x(0.7));
+    let tilt = DQuat::from_axis_angle(patches[0].normal.any_orthonormal_vector(), 3e-7);
+    let tilted = Patch { normal: tilt * patches[0].normal, ..patches[0].clone() };
+    let patches = [patches[0].clone(), tilted];
+    let counts = |angle: f64| {
+        let slack = [Slack { angle, distance: 0.0 }; 2];
+        let known = Touching { slack: &slack, ..Touching::exactly(&asm, &patches) };
+        let found = ndbg(known, Reach::Infinitesimal).expect("an arrangement");
+        let of = |dimension| found.regions.iter().filter(|r| r.dimension == dimension).count();
+        let merged = found.arrangement.merged;
+        assert!(
+            merged <= found.circles.resolution().near()
+                && (angle > 0.0 || merged < Resolution::FINEST.plane()),
+            "{merged}"
+        );
+        [of(2), of(1), of(0)]
+    };
+    assert_eq!(counts(0.0), [4, 0, 2]);
+    assert_eq!(counts(2e-7), [2, 1, 0]);
 }
 
 /// Each fixture with the twin that must say the opposite.

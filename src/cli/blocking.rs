@@ -62,9 +62,8 @@ pub fn blocking(placed: &Placed, asked: &Blocking) -> Result<Told, Trouble> {
         Some(Err(why)) => (None, Some(why)),
         found => (found.and_then(Result::ok), None),
     };
-    let touching = pairs(&joined.patches);
     let all = (asked.direction.is_none() || asked.sphere.is_some())
-        .then(|| ndbg_watched(&joined.assembly, &joined.patches, &touching, reach, &placed.watch));
+        .then(|| ndbg_watched(joined.touching(), reach, &placed.watch));
     let found = Found { reach, dbg: one, ndbg: all.as_ref(), not_run };
     let answer = answer::blocking(joined, found, placed.source.clone());
     write(asked, &answer, all.as_ref())?;
@@ -169,7 +168,10 @@ fn chapter(answer: &BlockingAnswer) -> Chapter {
         fact("distinct graphs", format!("{}, {connected} of them strongly connected", ndbg.graphs.len()));
         fact(
             "resolution",
-            format!("{:.1e} rad: directions nearer to one another count as one", ndbg.resolution),
+            format!(
+                "{:.1e} rad: directions nearer to one another count as one; those that do differ by {:.1e} at most",
+                ndbg.resolution, ndbg.merged
+            ),
         );
         words.push("Strongly connected along every direction is less than locked: parts that move in different directions at once are not seen.".into());
         tables.extend(table(ndbg));

@@ -1,12 +1,11 @@
 //! Takes critical arcs and points on the sphere of directions; gives the arrangement: vertices, edges and faces, each
 //! with a direction inside.
 //!
-//! No direction is sampled: vertices are ends and crossings of arcs, those within [`NEAR`] of one another are one;
+//! No direction is sampled: vertices are ends and crossings of arcs, those nearer to one another than the resolution are one;
 //! edges run between neighbors on a circle; faces are the loops around edges. Euler's formula is checked, and where it
 //! fails (arcs that cross too near one another to be told apart) there is no arrangement. Cost: the square of the
 //! circles, and of the edges.
 
-use super::NEAR;
 use super::circles::{Circle, Circles, Points, Spans};
 use glam::DVec3;
 use rayon::prelude::*;
@@ -37,14 +36,6 @@ impl Piece {
         Piece { start, end: start + way.rem_euclid(TAU) }
     }
 
-    /// The same piece told by another number of its circle.
-    fn renumbered(self, c: Circle, own: &Circles, to: (Circle, &Circles)) -> Piece {
-        let same_way = own.normal(c).dot(to.1.normal(to.0)) > 0.0;
-        let first = own.at(c, if same_way { self.start } else { self.end });
-        let start = to.1.angle(to.0, first);
-        Piece { start, end: start + self.end - self.start }
-    }
-
     /// Its mirror image in the origin.
     fn opposite(self) -> Piece {
         let start = (self.start + PI).rem_euclid(TAU);
@@ -62,17 +53,6 @@ impl Critical {
             arcs.extend(opposite);
         }
         self
-    }
-
-    /// The same arcs and points told by other numbers of their circles.
-    pub fn renumbered(self, own: &Circles, circles: &mut Circles) -> Critical {
-        let mut out = Critical { points: self.points, ..Critical::default() };
-        for (c, pieces) in self.arcs {
-            let to = circles.number(own.normal(c));
-            let pieces = pieces.into_iter().map(|p| p.renumbered(c, own, (to, circles)));
-            out.arcs.entry(to).or_default().extend(pieces);
-        }
-        out
     }
 
     pub fn join(&mut self, other: Critical) {
@@ -93,7 +73,7 @@ pub struct Arc {
     /// Angles on the circle; `end > start`.
     pub start: f64,
     pub end: f64,
-    /// Arcs of other circles run within [`NEAR`] of it and are one with it.
+    /// Arcs of other circles run nearer to it than the resolution and are one with it.
     pub shared: bool,
     /// Numbers of the faces on the left (toward the normal) and on the right.
     pub left: usize,
@@ -114,6 +94,9 @@ pub struct Arrangement {
     pub faces: Vec<Face>,
     /// Edges that end at each vertex.
     pub around: Vec<Vec<usize>>,
+    /// The widest angle between two critical directions that were counted as one, radians: any resolution from here up
+    /// to the one taken gives this same arrangement.
+    pub merged: f64,
 }
 
 /// Why there is none.
@@ -153,27 +136,33 @@ struct Net {
     spans: BTreeMap<Circle, Spans>,
     edges: Vec<Arc>,
     around: Vec<Vec<usize>>,
+    merged: f64,
 }
 
 impl Net {
     fn new(circles: &Circles, critical: &Critical) -> Result<Net, NoArrangement> {
+        let near = circles.resolution().near();
         let mut spans: BTreeMap<Circle, Spans> = BTreeMap::new();
         for (&c, arcs) in &critical.arcs {
-            spans.insert(c, Spans::of(arcs.iter().map(|a| (a.start, a.end)), NEAR));
+            spans.insert(c, Spans::of(arcs.iter().map(|a| (a.start, a.end)), near));
         }
         spans.extend(critical.whole.iter().map(|&c| (c, Spans::full())));
-        let vertices = vertices(circles, critical, &spans)?;
-        let mut net = Net { around: vec![Vec::new(); vertices.len()], vertices, spans, edges: Vec::new() };
+        let points = vertices(circles, critical, &spans)?;
+        let (vertices, merged) = (points.all().to_vec(), points.widest().max(circles.widest()));
+        let around = vec![Vec::new(); vertices.len()];
+        let mut net = Net { vertices, spans, edges: Vec::new(), around, merged };
         net.lay_edges(circles);
         Ok(net)
     }
 
     fn lay_edges(&mut self, circles: &Circles) {
-        let on_circle = |(&c, spans): (&Circle, &Spans)| -> Vec<Arc> {
+        let near = circles.resolution().near();
+        let on_circle = |(&c, spans): (&Circle, &Spans)| -> (Vec<Arc>, f64) {
             let n = circles.normal(c);
-            let near = self.vertices.iter().enumerate().filter(|(_, v)| n.dot(**v).abs() <= NEAR);
-            let mut at: Vec<(f64, usize)> = near.map(|(k, &v)| (circles.angle(c, v), k)).collect();
-            at.retain(|&(angle, _)| spans.holds(angle, NEAR));
+            let on = self.vertices.iter().enumerate().filter(|(_, v)| n.dot(**v).abs() <= near);
+            let mut at: Vec<(f64, usize)> = on.map(|(k, &v)| (circles.angle(c, v), k)).collect();
+            at.retain(|&(angle, _)| spans.holds(angle, near));
+            let off = at.iter().map(|&(_, k)| n.dot(self.vertices[k]).abs()).fold(0.0, f64::max);
             at.sort_by(|x, y| x.0.total_cmp(&y.0).then(x.1.cmp(&y.1)));
             let next = |k: usize| if k + 1 < at.len() { at[k + 1] } else { (at[0].0 + TAU, at[0].1) };
             let arc = |k: usize| {
@@ -181,11 +170,13 @@ impl Net {
                 Arc { circle: c, from, to, start, end, shared: false, left: 0, right: 0 }
             };
             let inside = |a: &Arc| spans.holds(((a.start + a.end) / 2.0).rem_euclid(TAU), 0.0);
-            (0..at.len()).map(arc).filter(inside).collect()
+            ((0..at.len()).map(arc).filter(inside).collect(), off)
         };
         let all: Vec<_> = self.spans.iter().collect();
-        let found = all.into_par_iter().map(on_circle).collect::<Vec<_>>().concat();
-        self.edges = without_twins(circles, found);
+        let (found, off): (Vec<Vec<Arc>>, Vec<f64>) = all.into_par_iter().map(on_circle).unzip();
+        let (edges, apart) = without_twins(circles, found.concat());
+        self.edges = edges;
+        self.merged = off.into_iter().chain([self.merged, apart]).fold(0.0, f64::max);
         for (k, e) in self.edges.iter().enumerate() {
             self.around[e.from].push(k);
             if e.to != e.from {
@@ -241,7 +232,8 @@ impl Net {
             (e.left, e.right) = (face_of[2 * k], face_of[2 * k + 1]);
         }
         let faces = rims.into_par_iter().map(|rim| Face { d: self.inside(circles, &rim), rim }).collect();
-        Ok(Arrangement { vertices: self.vertices, edges: self.edges, faces, around: self.around })
+        let (vertices, edges, around) = (self.vertices, self.edges, self.around);
+        Ok(Arrangement { vertices, edges, faces, around, merged: self.merged })
     }
 
     /// The half edge that follows each one around the face on its left: at its end, the next clockwise from its own way
@@ -272,6 +264,7 @@ impl Net {
 
     /// A direction inside the face: from the middle of its longest edge, half the way to the next arc across.
     fn inside(&self, circles: &Circles, rim: &[(usize, bool)]) -> DVec3 {
+        let near = circles.resolution().near();
         let length = |e: usize| self.edges[e].end - self.edges[e].start;
         let widest =
             rim.iter().copied().max_by(|x, y| length(x.0).total_cmp(&length(y.0)).then(y.0.cmp(&x.0)));
@@ -283,7 +276,7 @@ impl Net {
             let k = circles.normal(c);
             let t = (-k.dot(m)).atan2(k.dot(n)).rem_euclid(PI);
             let d = m * t.cos() + n * t.sin();
-            spans.holds(circles.angle(c, d), NEAR).then_some(t)
+            spans.holds(circles.angle(c, d), near).then_some(t)
         };
         let others = self.spans.iter().filter(|(c, _)| **c != e.circle);
         // Its own circle comes again after half a turn.
@@ -292,22 +285,29 @@ impl Net {
     }
 }
 
-/// Arcs between the same vertices whose middles lie within twice [`NEAR`] are one: what is left of snapping vertices.
-fn without_twins(circles: &Circles, all: Vec<Arc>) -> Vec<Arc> {
+/// Arcs between the same vertices whose middles lie within twice the resolution are one: what is left of snapping vertices. And how far
+/// apart such twins are at most.
+fn without_twins(circles: &Circles, all: Vec<Arc>) -> (Vec<Arc>, f64) {
+    let near = circles.resolution().near();
+    let mut widest: f64 = 0.0;
     let mut by_ends: BTreeMap<(usize, usize), Vec<usize>> = BTreeMap::new();
     let mut kept: Vec<Arc> = Vec::new();
     for arc in all {
         let middle = |a: &Arc| circles.at(a.circle, (a.start + a.end) / 2.0);
         let beside = by_ends.entry((arc.from.min(arc.to), arc.from.max(arc.to))).or_default();
-        match beside.iter().find(|&&k| middle(&kept[k]).distance(middle(&arc)) <= 2.0 * NEAR) {
-            Some(&k) => kept[k].shared = true,
+        let apart = |k: usize| middle(&kept[k]).distance(middle(&arc));
+        match beside.iter().copied().find(|&k| apart(k) <= 2.0 * near) {
+            Some(k) => {
+                widest = widest.max(apart(k));
+                kept[k].shared = true;
+            }
             None => {
                 beside.push(kept.len());
                 kept.push(arc);
             }
         }
     }
-    kept
+    (kept, widest)
 }
 
 /// Points, ends of arcs, and crossings that lie on arcs of both circles.
@@ -315,8 +315,8 @@ fn vertices(
     circles: &Circles,
     critical: &Critical,
     spans: &BTreeMap<Circle, Spans>,
-) -> Result<Vec<DVec3>, NoArrangement> {
-    let mut points = Points::new(NEAR);
+) -> Result<Points, NoArrangement> {
+    let mut points = Points::new(circles.resolution().near());
     let ends =
         critical.arcs.iter().flat_map(|(&c, arcs)| arcs.iter().flat_map(move |a| [(c, a.start), (c, a.end)]));
     let ends = ends.map(|(c, angle)| circles.at(c, angle));
@@ -331,11 +331,12 @@ fn vertices(
             return Err(NoArrangement::TooMany { most: MOST_VERTICES });
         }
     }
-    Ok(points.all().to_vec())
+    Ok(points)
 }
 
 fn crossings(circles: &Circles, c: (Circle, &Spans), e: (Circle, &Spans)) -> Vec<DVec3> {
     let Some(v) = circles.normal(c.0).cross(circles.normal(e.0)).try_normalize() else { return Vec::new() };
-    let on = |d: DVec3| [c, e].iter().all(|&(k, spans)| spans.holds(circles.angle(k, d), NEAR));
+    let near = circles.resolution().near();
+    let on = |d: DVec3| [c, e].iter().all(|&(k, spans)| spans.holds(circles.angle(k, d), near));
     [v, -v].into_iter().filter(|&d| on(d)).collect()
 }

@@ -1,148 +1,117 @@
 //! Takes two parts, gives the directions along which the first runs into the second: a union of open convex cones, and
-//! the closed sectors that are left free, whose edges are the critical arcs of the pair.
+//! the edges of that union, which are the critical arcs of the pair.
 //!
-//! Cones from patches are of first order; cones from cells are for the whole way. Exact to [`SAME_ANGLE`] (see
-//! `sector`); the second runs into the first along the opposite directions.
+//! Cones from patches are of first order; cones from cells are for the whole way. Exact to the [`Resolution`] (see
+//! `union`); the second runs into the first along the opposite directions.
 
 use super::arrangement::{Critical, Piece};
-use super::circles::{Circle, Circles};
+use super::caps::{Ball, Cap};
+use super::circles::{Circle, Circles, Resolution};
+use super::union::{Bounded, Edge, Union};
 use crate::assembly::PartIx;
+use crate::blocking::Touch;
 use crate::blocking::cone::polar;
-use crate::blocking::sector::{Blocked, Keep, Sector, sectors};
+use crate::blocking::sector::{Blocked, sectors};
 use crate::blocking::shadow::{Convex, Shapes};
-use crate::blocking::{SAME_ANGLE, Touch, bounds};
 use glam::DVec3;
 use std::collections::BTreeSet;
-use std::f64::consts::PI;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// Which parts, which cones block the first from moving through the second, and what is free.
+/// Which parts, which cones block the first from moving through the second, and where their union ends.
 #[derive(Clone, Debug)]
 pub struct Between {
     pub a: PartIx,
     pub b: PartIx,
-    pub cones: Vec<Blocked>,
-    pub free: Vec<Sector>,
+    pub cones: Vec<Bounded>,
+    pub edges: Vec<Edge>,
+    pub everywhere: Everywhere,
 }
 
-impl Between {
+/// Whether any direction is free.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Everywhere {
+    Blocked,
+    NotBlocked,
+}
+
+/// What patches alone say of a pair, before the union's edges are known.
+#[derive(Clone, Debug)]
+pub struct Start {
+    pub a: PartIx,
+    pub b: PartIx,
+    /// Unit normals from `a` to `b`, each once.
+    normals: Vec<DVec3>,
+    resolution: Resolution,
+}
+
+impl Start {
     /// From the unit normals of the pair's patches, from `a` to `b`.
-    pub fn touching(a: PartIx, b: PartIx, normals: &[DVec3]) -> Between {
-        let free = sectors(&polar(normals.iter().copied()));
+    pub fn new(a: PartIx, b: PartIx, normals: &[DVec3], resolution: Resolution) -> Start {
         let mut seen = BTreeSet::new();
         let distinct = normals.iter().filter(|n| seen.insert(n.to_array().map(f64::to_bits)));
-        Between { a, b, cones: distinct.map(|&n| Blocked::by_patch(n)).collect(), free }
+        Start { a, b, normals: distinct.copied().collect(), resolution }
     }
 
-    /// What is left free when the cells of the two are in each other's way, too. Cells that are near come first; cones that
-    /// take nothing away from what those before left free are dropped. None when the work runs out first.
-    pub fn with_cells(mut self, shapes: &Shapes, touch: Touch, work: &Work) -> Option<Between> {
-        if self.free.is_empty() {
-            return Some(self);
-        }
+    pub fn normals(&self) -> &[DVec3] {
+        &self.normals
+    }
+
+    /// Blocked at the very start. None when the work runs out first.
+    pub fn at_the_start(&self, work: &Work) -> Option<Between> {
+        let union = self.by_patches();
+        work.spend(union.steps)?;
+        Some(self.between(&union))
+    }
+
+    /// Blocked on the whole way: the cells of the two are in each other's way, too. Cells that are near come first. None
+    /// when the work runs out first.
+    pub fn on_the_way(&self, shapes: &Shapes, touch: Touch, work: &Work) -> Option<Between> {
+        let mut union = self.by_patches();
+        // What may be free at all, as caps: a cone that meets none of it adds nothing.
+        let free = sectors(&polar(self.normals.iter().copied()));
+        let free: Vec<Cap> = free.iter().map(|s| Cap::reaching(s.middle(), s.corners())).collect();
         let ((cells_a, at_a), (cells_b, at_b)) = (shapes.part(self.a), shapes.part(self.b));
         let step = at_b - at_a;
-        let balls = |cells: &[Convex]| cells.iter().map(Ball::around).collect::<Vec<_>>();
-        let (balls_a, balls_b) = (balls(cells_a), balls(cells_b));
-        let all = (0..cells_a.len()).flat_map(|i| (0..cells_b.len()).map(move |j| (i, j)));
-        let mut caps: Vec<(Cap, usize, usize)> =
-            all.map(|(i, j)| (balls_a[i].toward(&balls_b[j], step), i, j)).collect();
-        caps.sort_by(|x, y| y.0.angle.total_cmp(&x.0.angle).then((x.1, x.2).cmp(&(y.1, y.2))));
-        let mut around: Vec<Cap> = self.free.iter().map(Cap::around).collect();
-        for (cap, i, j) in caps {
-            // What a kept cone holds takes nothing away; most small cones lie in wide ones.
-            work.spend(self.cones.len())?;
-            if self.cones.iter().any(|c| cap.inside(c)) {
-                continue;
+        for (cap, i, j) in by_width(cells_a, cells_b, step) {
+            let (a, b) = (&cells_a[i], &cells_b[j]);
+            let before = union.steps;
+            if free.iter().any(|f| f.meets(&cap)) && !union.holds_all_ways(a, b, step) {
+                work.spend(a.vertices.len() * b.vertices.len())?;
+                let cone = Bounded::new(Blocked::by_cells(a, b, step, touch.depth()), self.resolution);
+                cone.into_iter().for_each(|cone| union.add(cone));
             }
-            work.spend(self.free.len())?;
-            let near: Vec<bool> = around.iter().map(|c| cap.meets(c)).collect();
-            if near.contains(&true) {
-                work.spend(cells_a[i].vertices.len() * cells_b[j].vertices.len())?;
-                let cone = Blocked::by_cells(&cells_a[i], &cells_b[j], step, touch.depth());
-                self.take(cone, &near, &mut around);
-            }
+            work.spend(free.len() + union.steps - before)?;
         }
-        Some(self)
+        Some(self.between(&union))
     }
 
-    /// `near`: the free sectors that the cone may have a direction in common with; `around`: a cap around each.
-    fn take(&mut self, cone: Blocked, near: &[bool], around: &mut Vec<Cap>) {
-        if never(&cone) {
-            return;
-        }
-        let bitten: Vec<bool> = self.free.iter().zip(near).map(|(s, &n)| n && bites(&cone, s)).collect();
-        if !bitten.contains(&true) {
-            return;
-        }
-        let old = std::mem::take(&mut self.free).into_iter().zip(std::mem::take(around));
-        for ((sector, cap), bitten) in old.zip(bitten) {
-            let (pieces, caps) = if bitten {
-                let pieces = cone.taken_from(&sector);
-                let caps = pieces.iter().map(Cap::around).collect();
-                (pieces, caps)
-            } else {
-                (vec![sector], vec![cap])
-            };
-            self.free.extend(pieces);
-            around.extend(caps);
-        }
-        self.cones.push(cone);
+    fn by_patches(&self) -> Union {
+        let mut union = Union::new(self.resolution);
+        let cones = self.normals.iter().filter_map(|&n| Bounded::new(Blocked::by_patch(n), self.resolution));
+        cones.for_each(|cone| union.add(cone));
+        union
+    }
+
+    fn between(&self, union: &Union) -> Between {
+        let closed = polar(self.normals.iter().copied()).is_zero();
+        let edges = if closed { Vec::new() } else { union.edges() };
+        let cones = union.cones().to_vec();
+        // Without an edge it is all of the sphere or nothing.
+        let blocked = closed || (edges.is_empty() && !cones.is_empty());
+        let everywhere = if blocked { Everywhere::Blocked } else { Everywhere::NotBlocked };
+        Between { a: self.a, b: self.b, cones, edges, everywhere }
     }
 }
 
-/// A cone between bounds that face each other holds no direction: a cell without an inside.
-fn never(cone: &Blocked) -> bool {
-    cone.0.iter().enumerate().any(|(k, n)| cone.0[..k].iter().any(|m| m.distance(-*n) <= SAME_ANGLE))
-}
-
-/// A ball around a cell.
-struct Ball {
-    middle: DVec3,
-    radius: f64,
-}
-
-impl Ball {
-    fn around(cell: &Convex) -> Ball {
-        let (lo, hi) = bounds(cell.vertices.iter().copied());
-        let middle = (lo + hi) / 2.0;
-        let radius = cell.vertices.iter().map(|v| v.distance(middle)).fold(0.0, f64::max);
-        Ball { middle, radius }
-    }
-
-    /// A cap of the sphere that holds every direction along which this ball meets the other, moved by `step`.
-    fn toward(&self, other: &Ball, step: DVec3) -> Cap {
-        let way = other.middle + step - self.middle;
-        let sine = (self.radius + other.radius) / way.length();
-        let angle = if sine < 1.0 { sine.asin() } else { PI };
-        Cap { middle: way.normalize_or(DVec3::Z), angle }
-    }
-}
-
-/// The directions within an angle (radians) of a middle.
-struct Cap {
-    middle: DVec3,
-    angle: f64,
-}
-
-impl Cap {
-    /// Whether all directions of the cap lie inside the cone.
-    fn inside(&self, cone: &Blocked) -> bool {
-        self.angle < PI / 2.0 && cone.0.iter().all(|n| n.dot(self.middle) > self.angle.sin() + SAME_ANGLE)
-    }
-
-    /// A convex sector lies in the cap about its middle that reaches its farthest corner.
-    fn around(sector: &Sector) -> Cap {
-        let middle = sector.middle();
-        let angle = sector.corners().iter().map(|c| c.angle_between(middle)).fold(0.0, f64::max);
-        Cap { middle, angle }
-    }
-
-    /// Whether two caps may have a direction in common: never wrong when it says no.
-    fn meets(&self, other: &Cap) -> bool {
-        let both = self.angle + other.angle + SAME_ANGLE;
-        both >= PI || self.middle.dot(other.middle) >= both.cos()
-    }
+/// All pairs of cells, those that are in each other's way along the most directions first.
+fn by_width(a: &[Convex], b: &[Convex], step: DVec3) -> Vec<(Cap, usize, usize)> {
+    let balls = |cells: &[Convex]| cells.iter().map(Ball::around).collect::<Vec<_>>();
+    let (balls_a, balls_b) = (balls(a), balls(b));
+    let all = (0..a.len()).flat_map(|i| (0..b.len()).map(move |j| (i, j)));
+    let mut caps: Vec<(Cap, usize, usize)> =
+        all.map(|(i, j)| (balls_a[i].toward(&balls_b[j], step), i, j)).collect();
+    caps.sort_by(|x, y| y.0.angle.total_cmp(&x.0.angle).then((x.1, x.2).cmp(&(y.1, y.2))));
+    caps
 }
 
 /// Steps that may still be taken: a free sector looked at, or a difference between two corners. Shared among threads;
@@ -160,16 +129,6 @@ impl Work {
         let spent = self.0.fetch_update(Ordering::Relaxed, Ordering::Relaxed, less);
         spent.is_ok().then_some(())
     }
-}
-
-/// Whether the open cone and the sector have a direction in common.
-fn bites(cone: &Blocked, sector: &Sector) -> bool {
-    let beyond = |n: &DVec3| sector.corners().iter().all(|c| n.dot(*c) <= 0.0);
-    if cone.0.iter().any(beyond) {
-        return false;
-    }
-    let rest = cone.0.iter().try_fold(sector.clone(), |s, &n| s.cut(n, Keep::Above));
-    rest.is_some_and(|s| cone.0.iter().all(|n| n.dot(s.middle()) > SAME_ANGLE))
 }
 
 /// A facet of a blocking cone: its unit normal, and the number of its circle.
@@ -191,7 +150,7 @@ pub enum On {
     /// No critical circle.
     Nothing,
     Circle(Circle),
-    /// A crossing, or the end of an arc: on every circle within [`super::NEAR`].
+    /// A crossing, or the end of an arc: on every circle as near as the resolution tells.
     Crossing,
 }
 
@@ -200,12 +159,12 @@ impl Place {
         Place { d: -self.d, on: self.on }
     }
 
-    fn inside(self, f: &Facet) -> bool {
+    fn inside(self, f: &Facet, near: f64) -> bool {
         let height = f.normal.dot(self.d);
         match self.on {
             On::Nothing => height > 0.0,
             On::Circle(c) => f.circle != c && height > 0.0,
-            On::Crossing => height > super::NEAR,
+            On::Crossing => height > near,
         }
     }
 }
@@ -215,57 +174,39 @@ impl Place {
 pub struct Numbered {
     pub a: PartIx,
     pub b: PartIx,
-    cones: Vec<Vec<Facet>>,
-    /// No direction is free, either way.
-    everywhere: bool,
+    cones: Vec<(Cap, Vec<Facet>)>,
+    everywhere: Everywhere,
+    near: f64,
 }
 
 impl Numbered {
     pub fn new(between: &Between, circles: &mut Circles) -> Numbered {
         let mut facet = |&normal: &DVec3| Facet { normal, circle: circles.number(normal) };
-        let cones = between.cones.iter().map(|c| c.0.iter().map(&mut facet).collect()).collect();
-        Numbered { a: between.a, b: between.b, cones, everywhere: between.free.is_empty() }
+        let cones = between.cones.iter().map(|c| (c.cap, c.normals.iter().map(&mut facet).collect()));
+        let (cones, near) = (cones.collect(), circles.resolution().near());
+        Numbered { a: between.a, b: between.b, cones, everywhere: between.everywhere, near }
     }
 
     /// Whether `a` runs into `b`, and whether `b` runs into `a`, when it moves along the direction.
     pub fn stops(&self, place: Place) -> [bool; 2] {
-        [place, place.opposite()]
-            .map(|p| self.everywhere || self.cones.iter().any(|c| c.iter().all(|f| p.inside(f))))
+        let held = |p: Place| {
+            let near = self.cones.iter().filter(|(cap, _)| cap.may_hold(p.d));
+            near.map(|(_, facets)| facets).any(|facets| facets.iter().all(|f| p.inside(f, self.near)))
+        };
+        [place, place.opposite()].map(|p| self.everywhere == Everywhere::Blocked || held(p))
     }
+}
 
-    fn facets(&self) -> impl Iterator<Item = &Facet> {
-        self.cones.iter().flatten()
-    }
-
-    /// Where the pair's blocking may change: edges of its free sectors that lie on a facet of a cone, and sectors that
-    /// are one direction. More than that may be among them.
-    pub fn candidates(&self, free: &[Sector], circles: &mut Circles) -> Critical {
-        let mut found = Critical::default();
-        for sector in free {
-            let corners = sector.corners();
-            if let [only] = corners {
-                found.points.push(*only);
-            }
-            let closed = corners.len() > 2;
-            for k in 0..if closed { corners.len() } else { corners.len() - 1 } {
-                let (p, q) = (corners[k], corners[(k + 1) % corners.len()]);
-                let circle = self.facet_through(p, q).or_else(|| {
-                    // Not bounded by a facet: a cut of ours; but an arc that is free alone is critical all along.
-                    let n = p.cross(q).try_normalize()?;
-                    (!closed).then(|| circles.number(n))
-                });
-                if let Some(c) = circle {
-                    found.arcs.entry(c).or_default().push(Piece::between(circles, c, p, q));
-                }
-            }
+/// Where the pair's blocking changes, either way: the edges of the union and their opposites.
+pub fn critical(between: &Between, circles: &mut Circles) -> Critical {
+    let mut found = Critical::default();
+    for edge in &between.edges {
+        if edge.from == edge.to {
+            found.points.push(edge.from);
+        } else {
+            let c = circles.number(edge.normal);
+            found.arcs.entry(c).or_default().push(Piece::between(circles, c, edge.from, edge.to));
         }
-        found.with_opposites()
     }
-
-    /// The circle of the facet that both directions lie on, if there is one.
-    fn facet_through(&self, p: DVec3, q: DVec3) -> Option<Circle> {
-        let off = |f: &Facet| f.normal.dot(p).abs().max(f.normal.dot(q).abs());
-        let on = self.facets().map(|f| (off(f), f.circle)).filter(|o| o.0 <= super::NEAR);
-        on.min_by(|x, y| x.0.total_cmp(&y.0)).map(|o| o.1)
-    }
+    found.with_opposites()
 }

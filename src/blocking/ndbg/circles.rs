@@ -1,16 +1,51 @@
 //! Takes normals of planes through the origin, gives great circles by number: normals that agree up to sign and
-//! [`SAME_ANGLE`] name the same circle, so that later stages compare numbers and not angles.
+//! the [`Resolution`] name the same circle, so that later stages compare numbers and not angles.
 //!
-//! Not promised: an order free choice among chains of normals, each within [`SAME_ANGLE`] of the next; the first one met
+//! Not promised: an order free choice among chains of normals, each within the resolution of the next; the first one met
 //! stands for those near it.
 
 use crate::blocking::SAME_ANGLE;
+use crate::contact::Slack;
 use glam::DVec3;
 use std::collections::BTreeMap;
-use std::f64::consts::TAU;
+use std::f64::consts::{FRAC_PI_2, TAU};
 
 /// Number of a great circle.
 pub type Circle = usize;
+
+/// How near to one another critical directions must be to count as one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Resolution {
+    plane: f64,
+}
+
+impl Resolution {
+    /// What round-off leaves of a normal, radians: coordinates are known to about 2^-40 of a crossing and facets are
+    /// 2^-12 and more across, so 2^-28.
+    pub const FINEST: Resolution = Resolution { plane: 1.0 / (1u64 << 28) as f64 };
+
+    /// [`SAME_ANGLE`]: what is nearer than that ends less than the touch away (see `blocking`).
+    pub const COARSEST: Resolution = Resolution { plane: SAME_ANGLE };
+
+    /// Twice what the digits of the file leave open of the normals (two of them are compared), between the finest and
+    /// the coarsest; contacts too small to tell a normal do not count.
+    pub fn of(slack: &[Slack]) -> Resolution {
+        let told =
+            slack.iter().map(|s| s.angle).filter(|&a| a < FRAC_PI_2).map(|a| (2.0 * a).min(SAME_ANGLE));
+        Resolution { plane: told.fold(Resolution::FINEST.plane, f64::max) }
+    }
+
+    /// Radians between two planes that count as one.
+    pub fn plane(self) -> f64 {
+        self.plane
+    }
+
+    /// Radians between two directions that count as one: each lies within [`Resolution::plane`] of two planes, so
+    /// within four times that of where they cross, unless they are nearly parallel.
+    pub fn near(self) -> f64 {
+        4.0 * self.plane
+    }
+}
 
 /// Numbers points of the unit sphere, those within `near` of one that is known by its number.
 #[derive(Clone, Debug)]
@@ -18,11 +53,13 @@ pub struct Points {
     near: f64,
     known: Vec<DVec3>,
     boxes: BTreeMap<[i64; 3], Vec<usize>>,
+    /// The farthest that a point was from the one that it was counted as, radians.
+    widest: f64,
 }
 
 impl Points {
     pub fn new(near: f64) -> Points {
-        Points { near, known: Vec::new(), boxes: BTreeMap::new() }
+        Points { near, known: Vec::new(), boxes: BTreeMap::new(), widest: 0.0 }
     }
 
     pub fn all(&self) -> &[DVec3] {
@@ -41,12 +78,18 @@ impl Points {
     }
 
     pub fn number(&mut self, p: DVec3) -> usize {
-        self.find(p).unwrap_or_else(|| {
-            let home = self.home(p);
-            self.known.push(p);
-            self.boxes.entry(home).or_default().push(self.known.len() - 1);
-            self.known.len() - 1
-        })
+        if let Some(k) = self.find(p) {
+            self.widest = self.widest.max(self.known[k].distance(p));
+            return k;
+        }
+        let home = self.home(p);
+        self.known.push(p);
+        self.boxes.entry(home).or_default().push(self.known.len() - 1);
+        self.known.len() - 1
+    }
+
+    pub fn widest(&self) -> f64 {
+        self.widest
     }
 
     pub fn add(&mut self, p: DVec3) {
@@ -61,15 +104,17 @@ impl Points {
 
 /// Great circles by number.
 #[derive(Clone, Debug)]
-pub struct Circles(Points);
-
-impl Default for Circles {
-    fn default() -> Circles {
-        Circles(Points::new(SAME_ANGLE))
-    }
-}
+pub struct Circles(Points, Resolution);
 
 impl Circles {
+    pub fn new(resolution: Resolution) -> Circles {
+        Circles(Points::new(resolution.plane()), resolution)
+    }
+
+    pub fn resolution(&self) -> Resolution {
+        self.1
+    }
+
     pub fn count(&self) -> usize {
         self.0.known.len()
     }
@@ -80,7 +125,15 @@ impl Circles {
 
     /// The number of the circle across the unit vector `n`.
     pub fn number(&mut self, n: DVec3) -> Circle {
-        self.find(n).unwrap_or_else(|| self.0.number(n))
+        match self.0.find(-n) {
+            Some(_) if self.0.find(n).is_none() => self.0.number(-n),
+            _ => self.0.number(n),
+        }
+    }
+
+    /// The widest angle between two planes that were counted as one, radians.
+    pub fn widest(&self) -> f64 {
+        self.0.widest()
     }
 
     pub fn find(&self, n: DVec3) -> Option<Circle> {
@@ -150,7 +203,7 @@ mod tests {
 
     #[test]
     fn one_number_for_a_plane_whichever_way_it_faces() {
-        let mut circles = Circles::default();
+        let mut circles = Circles::new(Resolution::COARSEST);
         let n = DVec3::new(0.6, 0.0, 0.8);
         let first = circles.number(n);
         assert_eq!(circles.number(-n), first);

@@ -1,13 +1,15 @@
 //! Takes parts in place and their patches; gives the non-directional blocking graph (NDBG, Wilson and Latombe) for
 //! translations: the sphere of directions cut into regions, each with one directional blocking graph (DBG).
 //!
-//! Over the arrangement of all critical directions, none sampled; infinitesimal or for the whole way. Directions that
-//! differ by less than [`NEAR`] count as one, which is far above round-off: every sign beyond that is the exact one.
+//! Over the arrangement of all critical directions, none sampled; infinitesimal or for the whole way. Directions
+//! nearer to one another than the [`Resolution`] count as one: round-off, or what the digits of a file leave open. How
+//! far apart those were that did is told; where that is round-off too, every sign is the exact one.
 //! Cost: about the square of the critical arcs; budgets are stated and what exceeds them is not run.
 //!
 //! Tried and left: whole great circles instead of arcs (a 2 x 2 window has thousands on the whole way, most of them
-//! critical nowhere); one arrangement of the edges of all free sectors (60,000 crossings for eight strands). So each pair
-//! gets an arrangement of its own first, and only what is critical there goes into that of all.
+//! critical nowhere); one arrangement of the edges of all free sectors (60,000 crossings for eight strands); an
+//! arrangement for each pair first, of those edges. Now the edges of each union of cones are found as such, one
+//! dimension at a time (`union`): each is critical, none is left out.
 //!
 //! Laws (tested):
 //! 1. What stops a part along a direction stops it along all directions near by: a graph on an edge or at a vertex has
@@ -17,27 +19,26 @@
 
 pub mod arrangement;
 pub mod between;
+pub mod caps;
 pub mod circles;
 mod regions;
+pub mod union;
 
 pub use regions::{Graph, Region, components_and_leavers};
 
-use super::graph::Pairs;
+use super::Touch;
+use super::graph::pairs;
 use super::shadow::Shapes;
-use super::{SAME_ANGLE, Touch};
 use crate::assembly::{Assembly, Mobility, PartIx};
-use crate::contact::Patch;
+use crate::contact::{Patch, Touching};
 use crate::watch::{All, Watch};
 use arrangement::{Arrangement, Critical, NoArrangement, arrangement};
-use between::{Between, Numbered, On, Place, Work};
+use between::{Between, Numbered, On, Place, Start, Work};
 use circles::Circles;
+pub use circles::Resolution;
 use glam::DVec3;
 use rayon::prelude::*;
 use std::collections::{BTreeMap, BTreeSet};
-
-/// Angle in radians below which two critical directions count as one: a corner of a free sector lies within
-/// [`SAME_ANGLE`] of each of two planes, so within four times that of where they cross unless they are nearly parallel.
-pub const NEAR: f64 = 4.0 * SAME_ANGLE;
 
 /// Which blocking: at the very start of a motion, or on the whole way to infinity.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -54,7 +55,7 @@ pub const MOST_CELL_PAIRS: usize = 500_000;
 pub const MOST_STEPS: usize = 1_000_000_000;
 
 /// Arcs of all distinct graphs together beyond this are not kept: some hundred megabytes as an answer.
-pub const MOST_ARCS: usize = 5_000_000;
+pub const MOST_ARCS: usize = 20_000_000;
 
 /// Why there is no NDBG.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -91,56 +92,60 @@ pub struct Ndbg {
 }
 
 /// The NDBG of all parts.
-pub fn ndbg(asm: &Assembly, patches: &[Patch], touching: &Pairs, reach: Reach) -> Result<Ndbg, NotRun> {
-    ndbg_watched(asm, patches, touching, reach, &Watch::default())
+pub fn ndbg(known: Touching<'_>, reach: Reach) -> Result<Ndbg, NotRun> {
+    ndbg_watched(known, reach, &Watch::default())
 }
 
-/// The same, watched: there is nothing before all pairs are known, so a stopped one is not run.
-pub fn ndbg_watched(
-    asm: &Assembly,
-    patches: &[Patch],
-    touching: &Pairs,
+/// The same, watched: there is nothing before all pairs are known, so a stopped one is not run. As fine as the digits
+/// allow; once more at the coarsest resolution where directions lie too near one another for that.
+pub fn ndbg_watched(known: Touching<'_>, reach: Reach, watch: &Watch) -> Result<Ndbg, NotRun> {
+    match at_resolution(known, reach, Resolution::of(known.slack), watch) {
+        Err(NotRun::NoArrangement(NoArrangement::TooNear { .. })) => {
+            at_resolution(known, reach, Resolution::COARSEST, watch)
+        }
+        found => found,
+    }
+}
+
+fn at_resolution(
+    known: Touching<'_>,
     reach: Reach,
+    resolution: Resolution,
     watch: &Watch,
 ) -> Result<Ndbg, NotRun> {
     let found = match reach {
-        Reach::Infinitesimal => {
-            let part = touching.iter().filter(|((a, b), _)| !both_held(asm, *a, *b));
-            part.map(|(&(a, b), of)| touch(patches, a, b, of)).collect()
-        }
-        Reach::Finite => finite(asm, patches, touching, watch)?,
+        Reach::Infinitesimal => at_the_start(known, resolution)?,
+        Reach::Finite => finite(known, resolution, watch)?,
     };
     if watch.is_stopped() {
         return Err(NotRun::Stopped);
     }
     let _stage = watch.stage("cutting the sphere of directions", "", All::Open);
-    let own: Vec<(Circles, Critical)> = found.par_iter().map(critical).collect::<Result<_, _>>()?;
-    let mut circles = Circles::default();
+    let mut circles = Circles::new(resolution);
     let mut all = Critical::default();
-    for (own, critical) in own {
-        all.join(critical.renumbered(&own, &mut circles));
+    for between in &found {
+        all.join(between::critical(between, &mut circles));
     }
     let pairs = found.iter().map(|between| Numbered::new(between, &mut circles)).collect();
     let arrangement = arrangement(&mut circles, all)?;
-    regions::regions(asm, pairs, circles, arrangement)
+    regions::regions(known.assembly, pairs, circles, arrangement)
 }
 
-/// Where the blocking of one pair changes, with the circles of its own that this is told by.
-fn critical(between: &Between) -> Result<(Circles, Critical), NotRun> {
-    let mut own = Circles::default();
-    if between.free.is_empty() || between.cones.is_empty() {
-        return Ok((own, Critical::default()));
-    }
-    let pair = Numbered::new(between, &mut own);
-    let candidates = pair.candidates(&between.free, &mut own);
-    let arrangement = arrangement(&mut own, candidates)?;
-    let critical = regions::critical(&pair, &own, &arrangement);
-    Ok((own, critical))
+/// Pairs that touch, but two held ones, which keep their places.
+fn at_the_start(known: Touching<'_>, resolution: Resolution) -> Result<Vec<Between>, NotRun> {
+    let work = Work::new(MOST_STEPS);
+    let touching = pairs(known.patches);
+    let pairs: Vec<_> = touching.iter().filter(|((a, b), _)| !both_held(known.assembly, *a, *b)).collect();
+    let made: Option<Vec<Between>> = pairs
+        .into_par_iter()
+        .map(|(&(a, b), of)| start(known.patches, (a, b), of, resolution).at_the_start(&work))
+        .collect();
+    made.ok_or(NotRun::TooManySteps)
 }
 
-fn touch(patches: &[Patch], a: PartIx, b: PartIx, of: &[usize]) -> Between {
+fn start(patches: &[Patch], (a, b): (PartIx, PartIx), of: &[usize], resolution: Resolution) -> Start {
     let normals: Vec<DVec3> = of.iter().map(|&k| patches[k].normal).collect();
-    Between::touching(a, b, &normals)
+    Start::new(a, b, &normals, resolution)
 }
 
 fn both_held(asm: &Assembly, a: PartIx, b: PartIx) -> bool {
@@ -148,12 +153,8 @@ fn both_held(asm: &Assembly, a: PartIx, b: PartIx) -> bool {
 }
 
 /// Every pair of parts, but two held ones, which keep their places.
-fn finite(
-    asm: &Assembly,
-    patches: &[Patch],
-    touching: &Pairs,
-    watch: &Watch,
-) -> Result<Vec<Between>, NotRun> {
+fn finite(known: Touching<'_>, resolution: Resolution, watch: &Watch) -> Result<Vec<Between>, NotRun> {
+    let asm = known.assembly;
     if let Some(p) = asm.parts.iter().find(|p| asm.solids[p.solid].cells.is_empty()) {
         return Err(NotRun::NoCells(p.id.clone()));
     }
@@ -161,9 +162,10 @@ fn finite(
     let all = parts.iter().flat_map(|&a| parts[a.at() + 1..].iter().map(move |&b| (a, b)));
     let all: Vec<_> = all.filter(|&(a, b)| !both_held(asm, a, b)).collect();
     let (shapes, depth) = (Shapes::of(asm), Touch::of(asm));
-    let none = Vec::new();
-    let starts: Vec<Between> =
-        all.iter().map(|&(a, b)| touch(patches, a, b, touching.get(&(a, b)).unwrap_or(&none))).collect();
+    let touching = pairs(known.patches);
+    let of = |pair: (PartIx, PartIx)| touching.get(&pair).map_or(&[][..], Vec::as_slice);
+    let starts: Vec<Start> =
+        all.iter().map(|&pair| start(known.patches, pair, of(pair), resolution)).collect();
     let keys: Vec<Congruent> = starts.iter().map(|start| congruent(start, &shapes)).collect();
     let mut first: BTreeMap<&Congruent, usize> = BTreeMap::new();
     for (k, key) in keys.iter().enumerate() {
@@ -183,7 +185,7 @@ fn finite(
             if watch.is_stopped() {
                 return None;
             }
-            let between = starts[k].clone().with_cells(&shapes, depth, &work)?;
+            let between = starts[k].on_the_way(&shapes, depth, &work)?;
             stage.add(1);
             Some((key, between))
         })
@@ -197,10 +199,10 @@ fn finite(
 /// agree in all of them have the same free directions.
 type Congruent = ([usize; 2], [u64; 3], BTreeSet<[u64; 3]>);
 
-fn congruent(pair: &Between, shapes: &Shapes) -> Congruent {
+fn congruent(pair: &Start, shapes: &Shapes) -> Congruent {
     let bits = |v: DVec3| v.to_array().map(f64::to_bits);
     let step = shapes.part(pair.b).1 - shapes.part(pair.a).1;
-    let normals = pair.cones.iter().flat_map(|cone| cone.0.iter().map(|&n| bits(n)));
+    let normals = pair.normals().iter().map(|&n| bits(n));
     ([pair.a, pair.b].map(|p| shapes.shape(p)), bits(step), normals.collect())
 }
 

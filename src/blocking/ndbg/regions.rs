@@ -3,7 +3,7 @@
 //!
 //! Exact where the arrangement is. Graphs are in the order of their arcs, regions in that of dimension and place.
 
-use super::arrangement::{Arrangement, Critical, Piece};
+use super::arrangement::Arrangement;
 use super::between::{Numbered, On, Place};
 use super::circles::Circles;
 use super::{MOST_ARCS, Ndbg, NotRun};
@@ -46,24 +46,6 @@ pub(super) fn bits(pairs: &[Numbered], place: Place) -> Vec<u64> {
         bits[k / 32] |= (u64::from(there) | u64::from(back) << 1) << (k % 32 * 2);
     }
     bits
-}
-
-/// The critical arcs and points of one pair: where its two bits differ from those beside.
-pub(super) fn critical(pair: &Numbered, circles: &Circles, arr: &Arrangement) -> Critical {
-    let bits: Vec<[bool; 2]> = places(circles, arr).into_iter().map(|p| pair.stops(p)).collect();
-    let (f, e) = (arr.faces.len(), arr.edges.len());
-    let mut critical = Critical::default();
-    for (k, arc) in arr.edges.iter().enumerate() {
-        if [arc.left, arc.right].iter().any(|&face| bits[face] != bits[f + k]) {
-            critical.arcs.entry(arc.circle).or_default().push(Piece { start: arc.start, end: arc.end });
-        }
-    }
-    for (v, &d) in arr.vertices.iter().enumerate() {
-        if arr.around[v].iter().any(|&k| bits[f + k] != bits[f + e + v]) {
-            critical.points.push(d);
-        }
-    }
-    critical
 }
 
 /// Faces, then edges, then vertices, in one numbering.

@@ -5,7 +5,7 @@
 use super::{Source, ids};
 use crate::assembly::{Assembly, PartIx};
 use crate::blocking::graph::{Dbg, Witness};
-use crate::blocking::ndbg::{NEAR, Ndbg, NotRun, Reach, components_and_leavers};
+use crate::blocking::ndbg::{Ndbg, NotRun, Reach, components_and_leavers};
 use crate::contact::Joined;
 use petgraph::visit::EdgeRef;
 use schemars::JsonSchema;
@@ -89,6 +89,9 @@ pub struct NdbgAnswer {
     pub beside: Vec<[usize; 2]>,
     /// Directions that differ by less count as one, radians.
     pub resolution: f64,
+    /// The widest angle, radians, between two critical directions that were counted as one. Far below
+    /// the resolution nothing was decided by it: a finer one gives the same cells.
+    pub merged: f64,
 }
 
 /// Answer of `blocking`.
@@ -170,7 +173,8 @@ fn written(asm: &Assembly, n: &Ndbg) -> NdbgAnswer {
         graphs: graphs.collect(),
         cells: cells.collect(),
         beside: n.beside.iter().map(|&(a, b)| [a, b]).collect(),
-        resolution: NEAR,
+        resolution: n.circles.resolution().near(),
+        merged: n.arrangement.merged,
     }
 }
 
