@@ -19,6 +19,7 @@ mod laws;
 mod margins;
 mod mesh;
 mod molds;
+mod newcomer;
 mod package;
 mod pages;
 mod pixels;

@@ -151,6 +151,7 @@ fn exhibit(mold: &Mold, id: &str, mesh: Mesh, classes: &[Class], class_of: Vec<u
         ],
         ways: [DVec3::Z, DVec3::NEG_Z].into_iter().chain(cores).collect(),
         ways_say: "The ways in which halves and cores leave.".into(),
+        buried: None,
     })
 }
 
