@@ -131,7 +131,9 @@ pub fn of_cast(placed: &Placed, made: &Report) -> (Vec<Exhibit>, Option<Chapter>
     let (mut shown, mut chapters) = (vec![], vec![]);
     for (part, route) in shapes.values().take(MOST_SHAPES) {
         match exhibits(placed, *part, *route) {
-            Ok((exhibits, chapter)) => {
+            Ok((exhibits, mut chapter)) => {
+                let id = &asm.part(*part).id;
+                chapter.facts.iter_mut().for_each(|f| f.0 = format!("{id}: {}", f.0));
                 shown.extend(exhibits);
                 chapters.push(chapter);
             }

@@ -216,6 +216,7 @@ fn everything(loaded: Loaded, out: &Path, common: &Common) -> Result<Told, Troub
     let (exhibits, molds) = molded::of_cast(&placed, &made);
     input.exhibits.extend(exhibits);
     input.molds = molds.map_or(input.molds, Answer::Given);
+    input.findings = Answer::Given(make::findings_chapter(&made));
     keep("report.html", page(&input).as_bytes())?;
     let fab = cast.unwrap_or(fab);
     Ok(summary(&placed, asked, as_made, fab, files, out))
@@ -312,7 +313,7 @@ fn input(
         repeats: chapter(&asked.repeats),
         chirality: chapter(&asked.chirality),
         ledger,
-        findings: Answer::not_run("they stand with the parts as made"),
+        findings: Answer::not_run("`weavelock fab` makes the parts and tells what it finds"),
         parts,
         limits: LIMITS.map(String::from).to_vec(),
     }

@@ -33,11 +33,12 @@ pub fn step(asm: &Assembly, all: &[Move], number: usize, view: View) -> Option<F
     let size = extent(&scene);
     let signs = one.movers.iter().flat_map(|m| sign(m, asm, &far, size));
     let signs: Vec<Item> = signs.map(|s| Item::sign(&s, Colour::srgb(palette::MOTION))).collect();
+    let arrows = signs.len();
     scene.items.extend(signs);
     // The camera leaves room for where the parts go to.
     scene.items.extend(near.into_iter().map(|i| Item { opacity: Opacity::Hidden, ..i }));
     let movers: BTreeSet<usize> = one.movers.iter().flat_map(|m| &m.parts).copied().collect();
-    see_through(&mut scene, &shown, &movers);
+    see_through(&mut scene, &shown, arrows, &movers);
     let ids: Vec<&str> = asm.parts.iter().map(|p| p.id.as_str()).collect();
     let words = moves::told(one, &ids, asm.mm_per_unit, Way::Together);
     Some(Figure {
@@ -55,13 +56,18 @@ const SEEN_PART: usize = 3;
 /// What a part keeps that is seen through: with three of them before it a mover still shows by half (0.8 cubed).
 const FAINT: f64 = 0.2;
 
-/// Makes what stays faint where it hides what moves; item `k` is part `shown[k]`.
-fn see_through(scene: &mut Scene, shown: &[usize], movers: &BTreeSet<usize>) {
+/// Makes what stays faint where it hides what moves, or its arrow; item `k` is part `shown[k]`, after the parts come
+/// `signs` arrows.
+fn see_through(scene: &mut Scene, shown: &[usize], signs: usize, movers: &BTreeSet<usize>) {
     let (moving, staying): (Vec<usize>, Vec<usize>) =
         (0..shown.len()).partition(|&k| movers.contains(&shown[k]));
     let Ok(size) = Size::new(COUNTED.0, COUNTED.1) else { return };
-    let seen = seen(scene, size, &moving);
-    if seen.here * SEEN_PART < seen.alone {
+    let arrows: Vec<usize> = (shown.len()..shown.len() + signs).collect();
+    let hidden = |items: &[usize]| {
+        let seen = seen(scene, size, items);
+        seen.here * SEEN_PART < seen.alone
+    };
+    if hidden(&moving) || hidden(&arrows) {
         staying.into_iter().for_each(|k| scene.items[k].opacity = Opacity::Ghost { alpha: FAINT });
     }
 }

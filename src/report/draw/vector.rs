@@ -86,8 +86,7 @@ fn strokes(scene: &Scene, size: Size) -> Vec<Stroke> {
 
 /// What is seen of one item where no other is, in a window that holds it with a sample to spare on each side.
 fn alone(stage: &Stage, size: Size, item: u32) -> Layer {
-    let all = &stage.triangles;
-    let own = all.partition_point(|f| f.item < item)..all.partition_point(|f| f.item <= item);
+    let (all, own) = (&stage.triangles, stage.of_item(item));
     let (mut lo, mut hi) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
     for p in all[own.clone()].iter().flat_map(|f| f.seen) {
         (lo, hi) = (lo.min(p.truncate()), hi.max(p.truncate()));
