@@ -13,6 +13,7 @@ mod fab;
 mod flex;
 mod golden;
 mod hands;
+mod heard;
 mod interlock;
 mod known;
 mod laws;

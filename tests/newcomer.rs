@@ -65,6 +65,17 @@ fn what_a_mesh_is_told_to_write_is_read() {
 }
 
 #[test]
+fn paths_of_other_systems_are_told_how_they_are_written() {
+    let at = room("paths");
+    for line in ["mesh = \"C:\\parts\\cube.stl\"", "mesh = 'parts\\cube.stl'"] {
+        std::fs::write(at.join("a.toml"), format!("[[part]]\n{line}\n")).expect("a spec");
+        if !cfg!(windows) {
+            refused(&["check", "a.toml"], &at, &["backslash", "write paths with /", "a.toml:2:"]);
+        }
+    }
+}
+
+#[test]
 fn files_of_other_systems_are_read() {
     let at = room("systems");
     let text = std::fs::read_to_string(at.join("plain.toml")).expect("a spec");
