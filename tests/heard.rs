@@ -12,7 +12,7 @@ const CONTROLS: [&str; 7] = ["button", "slider", "combobox", "checkbox", "link",
 
 fn opened() -> Option<Browser> {
     let mut browser = Browser::with_webgl()?;
-    let joined = swatch(2, 3);
+    let joined = swatch(2, 4);
     let answers = Answers { plan: Some(shown_plan(&joined)), ..Answers::default() };
     browser.load(&page(&bare(vec![of_assembly(&joined, &answers)], vec![])));
     Some(browser)
@@ -69,5 +69,5 @@ fn tab_reaches_every_control_and_shows_where_it_is() {
     browser.key("n", 0);
     browser.ask("new Promise((r) => setTimeout(r, 300))");
     let told = browser.ask("document.querySelector('[aria-live]').textContent");
-    assert!(told.as_str().is_some_and(|t| t.contains("step 1 of 5")), "{told}");
+    assert!(told.as_str().is_some_and(|t| t.contains("step 1 of 7")), "{told}");
 }
