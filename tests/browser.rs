@@ -140,7 +140,7 @@ impl Browser {
         said.map(|h| h["params"].to_string()).collect()
     }
 
-    fn key(&mut self, key: &str, code: u32) {
+    pub fn key(&mut self, key: &str, code: u32) {
         for kind in ["keyDown", "keyUp"] {
             self.call(
                 "Input.dispatchKeyEvent",

@@ -6,6 +6,7 @@ use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 use weavelock::assembly::mesh::{Reading, read_mesh};
 use weavelock::assembly::{Assembly, PartIx};
+use weavelock::report::draw::{Opacity, View, steps};
 use weavelock::report::export::{self, glb, ply, step, tables};
 use weavelock::report::moves;
 
@@ -369,4 +370,21 @@ fn a_page_with_a_mold_has_its_map_of_draft_and_undercut() {
     // Every facet of the part as it lies in the mold is in one class.
     assert_eq!(count(2).iter().sum::<u64>(), count(1)[0]);
     assert!(html.contains("Draft and undercut") && html.contains("% of the surface"));
+}
+
+/// A knob in its case: where it moves, the case is seen through; where the case moves, nothing is.
+#[test]
+fn what_hides_a_mover_is_seen_through() {
+    let parts = crate::support::root().join("fixtures/assemblies/parts");
+    let part = |name: &str| format!("[[part]]\nmesh = {:?}\n", parts.join(name).display().to_string());
+    let joined = joined(&format!("{}held = true\n{}", part("case.obj"), part("knob.obj")));
+    let ids: Vec<&str> = joined.assembly.parts.iter().map(|p| p.id.as_str()).collect();
+    let faint = |mover: &str, stays: &str, by: f64| {
+        let step = json!([{"parts": [mover], "kind": "translation", "direction": [0.0, 0.0, 1.0], "distance": by, "distance_mm": by, "clear": 0.0, "ends": "inside", "stays": [stays]}]);
+        let read = moves::read(&step, &ids);
+        let figure = steps::step(&joined.assembly, &read.moves, 1, View::default()).expect("a step");
+        figure.scene.items[..2].iter().map(|i| matches!(i.opacity, Opacity::Ghost { .. })).collect::<Vec<_>>()
+    };
+    assert_eq!(faint("knob", "case", 0.1), [true, false]);
+    assert_eq!(faint("case", "knob", 20.0), [false, false]);
 }

@@ -96,6 +96,65 @@ fn every_command_of_the_readme_runs() {
     }
 }
 
+/// Examples of the pages under docs/: lines set in by four blanks that begin with the program's name; what follows a
+/// semicolon reads what the first wrote.
+#[test]
+#[ignore = "a minute"]
+fn every_command_of_the_docs_runs() {
+    let at = room("docs");
+    std::fs::copy(support::root().join("fixtures/weaves/twill-2-2.draft"), at.join("my.draft"))
+        .expect("a draft");
+    let pages = std::fs::read_dir(support::root().join("docs")).expect("docs").flatten().map(|e| e.path());
+    let pages: std::collections::BTreeSet<PathBuf> =
+        pages.filter(|p| p.extension().is_some_and(|e| e == "md")).collect();
+    let mut count = 0;
+    for page in pages {
+        let text = std::fs::read_to_string(&page).expect("a page");
+        for line in text.lines().filter_map(|l| l.strip_prefix("    weavelock ")) {
+            let line = line.split(" # ").next().unwrap_or_default();
+            for part in line.split("; weavelock ").filter(|l| !l.starts_with("atlas")) {
+                // The part that is named there stands in the README's roof; here it is the tail.
+                answers_into(&part.replace("--flexible key", "--flexible tail"), &at);
+                count += 1;
+            }
+        }
+    }
+    assert!(count >= 15, "{count} examples in docs/");
+}
+
+/// Runs an example; what it sends to a file is written there.
+fn answers_into(example: &str, at: &Path) {
+    let out = ran(&words(example), at);
+    let said = String::from_utf8_lossy(&out.stderr);
+    assert!(matches!(out.status.code(), Some(0 | 1)), "weavelock {example}: {:?}\n{said}", out.status);
+    if let Some((_, file)) = example.split_once('>') {
+        std::fs::write(at.join(file.trim()), out.stdout).expect("written");
+    }
+}
+
+/// Specs shown in the README are read as they stand.
+#[test]
+fn the_specs_of_the_readme_are_read() {
+    let at = room("shown");
+    let parts = support::root().join("fixtures/assemblies/parts");
+    std::fs::copy(parts.join("dovetail-socket.obj"), at.join("rail.obj")).expect("a mesh");
+    std::fs::copy(support::root().join("fixtures/meshes/cube.stl"), at.join("panel.stl")).expect("a mesh");
+    let text = std::fs::read_to_string(support::root().join("README.md")).expect("a README");
+    let blocks: Vec<String> = text
+        .split("\n\n")
+        .filter(|b| b.starts_with("    name = "))
+        .map(|b| b.lines().map(|l| format!("{}\n", l.trim_start())).collect())
+        .collect();
+    assert_eq!(blocks.len(), 2);
+    for block in blocks {
+        // The two meshes stand in for ones that do not overlap: the second is set aside.
+        let block =
+            block.replace("mesh = \"panel.stl\"", "mesh = \"panel.stl\"\nat = [1,0,0,90, 0,1,0,0, 0,0,1,0]");
+        std::fs::write(at.join("shown.toml"), block).expect("a spec");
+        answers("export shown.toml --still --as csv --out shown", &at);
+    }
+}
+
 fn told(args: &[&str], at: &Path, typed: &str) -> Output {
     let mut program = Command::new(env!("CARGO_BIN_EXE_weavelock"));
     let piped = program
@@ -113,7 +172,7 @@ fn told(args: &[&str], at: &Path, typed: &str) -> Output {
 fn a_new_spec_is_asked_for_written_once_and_answers() {
     let at = room("new");
     // A slip is asked again; Enter takes the answer in brackets.
-    let out = told(&["new", "own.toml"], &at, "twill\n[2,2,1]\n4 x 4\n12\n12 mm\n\n");
+    let out = told(&["new", "own.toml"], &at, "twil\nTwill\n4 x 4\n12\n12 mm\n\n");
     assert_eq!(out.status.code(), Some(0), "{}", String::from_utf8_lossy(&out.stderr));
     let text = std::fs::read_to_string(at.join("own.toml")).expect("written");
     for line in ["abc = [2,2,1]", "wefts = 4", "warps = 4", "pitch = \"12 mm\"", "process = \"fdm-pla\""] {

@@ -139,6 +139,10 @@ pub enum Verb {
         /// Also make a mold of this part, to be seen as it opens: `--mold weft-0`
         #[arg(long, value_name = "PART")]
         mold: Option<String>,
+        /// The process whose mold that is (default: the spec's; two printed halves where that prints the part):
+        /// `--mold weft-0 --process pu-resin`
+        #[arg(long, value_name = "NAME|FILE", requires = "mold")]
+        process: Option<String>,
     },
     /// A commented spec from four questions, or none: `weavelock new mine.toml --defaults`
     New(super::new::Asked),
@@ -234,7 +238,10 @@ fn edge(text: &str) -> Result<f64, String> {
     }
 }
 
-/// A length with its unit, in mm.
+/// A length with its unit, in mm; none is negative.
 pub fn length(text: &str) -> Result<f64, String> {
-    crate::spec::length_mm(text)
+    match crate::spec::length_mm(text)? {
+        mm if mm >= 0.0 => Ok(mm),
+        _ => Err("a length is not negative".into()),
+    }
 }

@@ -14,7 +14,7 @@ use crate::report::draw::figures::{self, Figure};
 use crate::report::draw::{
     Background, Colour, Opacity, Projection, Scene, Size, View, render, steps, vector,
 };
-use crate::report::file::write_whole;
+use crate::report::file::{file_can_be_made, write_whole};
 use crate::report::instructions::{self, Instructions, Need};
 use clap::{Args, ValueEnum};
 use schemars::JsonSchema;
@@ -156,6 +156,7 @@ pub struct DrawAnswer {
 
 pub fn draw(placed: &Placed, asked: &Draw) -> Result<Told, Trouble> {
     let ending = ending(asked)?;
+    file_can_be_made(&asked.out)?;
     let ghosts: Vec<PartIx> =
         asked.ghost.iter().map(|id| part(&placed.joined, id.trim())).collect::<Result<_, _>>()?;
     let asm = &placed.joined.assembly;
@@ -165,7 +166,7 @@ pub fn draw(placed: &Placed, asked: &Draw) -> Result<Told, Trouble> {
         What::Tile => Ok(figures::alone(asm, subject(placed, asked)?)),
         What::Witness => witness(placed),
         What::Mold => molded::figure(placed, subject(placed, asked)?, asked.route)?,
-        What::Step(k) => step(placed, &asked.plan, k)?,
+        What::Step(k) => step(placed, asked, k)?,
         What::Instructions => {
             return match sheet(placed, asked)? {
                 Ok(html) => written(placed, asked, html.into_bytes()),
@@ -226,17 +227,18 @@ fn witness(placed: &Placed) -> Result<Figure, String> {
     }
 }
 
-fn step(placed: &Placed, asked: &planned::Asked, k: usize) -> Result<Result<Figure, String>, Trouble> {
-    let moves = planned::moves(placed, asked)?;
+fn step(placed: &Placed, asked: &Draw, k: usize) -> Result<Result<Figure, String>, Trouble> {
+    let moves = planned::moves(placed, &asked.plan)?;
     let count = moves.moves.len();
     if count == 0 {
-        return Ok(Err(planned::no_steps(asked, &moves)));
+        return Ok(Err(planned::no_steps(&asked.plan, &moves)));
     }
     if k > count {
         let hint = format!("the plan has {count} steps: give 1 to {count}");
         return Err(argument(format!("there is no step {k}"), hint).into());
     }
-    Ok(steps::step(&placed.joined.assembly, &moves.moves, k).ok_or_else(|| "there is no such step".into()))
+    Ok(steps::step(&placed.joined.assembly, &moves.moves, k, asked.view)
+        .ok_or_else(|| "there is no such step".into()))
 }
 
 /// Pixels of a panel: 90 mm at 170 dots per inch.
@@ -258,11 +260,13 @@ fn sheet(placed: &Placed, asked: &Draw) -> Result<Result<String, String>, Troubl
     }
     let panel = Size::new(PANEL.0, PANEL.1).map_err(|e| Trouble::Word(format!("error: {e}")))?;
     let drawn = |f: Figure| picture(f, asked.view, panel);
-    let all = (1..=count).filter_map(|k| steps::step(asm, &found.moves, k));
+    let all = (1..=count).filter_map(|k| steps::step(asm, &found.moves, k, asked.view));
     let steps = all.map(drawn).collect::<Result<Vec<_>, _>>()?;
     let words = vec![planned::told(placed, &asked.plan, &found)];
     let title = format!("{}: how it goes together", asm.name);
-    Ok(Ok(instructions::page(&Instructions { title, words, needs: needs(placed, panel)?, steps })))
+    let whole = picture(figures::together(asm), asked.view, panel)?;
+    let needs = needs(placed, panel)?;
+    Ok(Ok(instructions::page(&Instructions { title, words, needs, whole, steps })))
 }
 
 fn picture(figure: Figure, view: View, size: Size) -> Result<Picture, Trouble> {

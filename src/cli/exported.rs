@@ -96,6 +96,7 @@ type Files = Vec<(String, Vec<u8>)>;
 
 pub fn export(placed: &Placed, asked: &Export) -> Result<Told, Trouble> {
     let named = ENDINGS.iter().find(|e| ends_in(&asked.out, e.1)).map(|e| e.0);
+    ending_is_known(asked, named)?;
     let single =
         named.is_some() && asked.format.is_none_or(|f| Some(f) == named) && named != Some(Format::Csv);
     let format = asked.format.or(named).unwrap_or(Format::Stl);
@@ -122,6 +123,23 @@ pub fn export(placed: &Placed, asked: &Export) -> Result<Told, Trouble> {
     let chapter = Chapter { tone: Tone::Good, headline, words: names.clone(), ..Chapter::default() };
     let answer = ExportAnswer { verb: "export".into(), unit: unit.into(), files: names };
     Ok(Told::new(News::Good, &answer, &placed.joined.assembly.name, "Files", chapter))
+}
+
+/// Refuses a name that reads like a file of another format: it would become a folder.
+fn ending_is_known(asked: &Export, named: Option<Format>) -> Result<(), Trouble> {
+    let all = || ENDINGS.map(|e| e.1).join(", ");
+    let ending = asked.out.extension().map(|e| e.to_string_lossy().to_ascii_lowercase()).unwrap_or_default();
+    let what = match (asked.format, named) {
+        (None, None) if !ending.is_empty() && !asked.out.is_dir() => {
+            format!("`{}` ends in no format that is written", asked.out.display())
+        }
+        (Some(format), Some(other)) if format != other && !asked.out.is_dir() => {
+            format!("`{}` does not end as {} does", asked.out.display(), self::ending(format))
+        }
+        _ => return Ok(()),
+    };
+    let hint = format!("formats are {}; a folder is named without an ending, with --as FORMAT", all());
+    Err(argument(what, hint).into())
 }
 
 fn make_folder(folder: &Path) -> Result<(), Trouble> {

@@ -3,6 +3,7 @@
 //! Not promised: anything beyond what `spec` and `contact` promise.
 
 use super::args::PuzzleArgs;
+use super::mistaken::instead_of_a_spec;
 use super::puzzle;
 use super::told::Trouble;
 use crate::contact::{self, Joined};
@@ -37,6 +38,9 @@ pub struct Placed {
 
 /// Reads a spec or puzzle file; `asked` goes with the latter.
 pub fn spec(file: &Path, asked: &PuzzleArgs, watch: &Watch) -> Result<Loaded, Trouble> {
+    if let Some(fault) = instead_of_a_spec(file) {
+        return Err(fault.into());
+    }
     if is_named(file) {
         return puzzle::loaded(file, asked, watch);
     }

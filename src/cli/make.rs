@@ -182,6 +182,27 @@ fn finding(f: &Finding) -> String {
     format!("{:?}: {of}{} ({})", f.severity, f.what, f.remedy)
 }
 
+/// What whoever makes the parts has to know, worst first.
+pub fn findings_chapter(report: &Report) -> Chapter {
+    let mut found: Vec<&Finding> = report.findings.iter().collect();
+    found.sort_by_key(|f| std::cmp::Reverse(f.severity));
+    let (tone, headline) = match (found.first().map(|f| f.severity), found.len()) {
+        (None, _) => (Tone::Good, "Nothing stands in the way of making the parts.".to_string()),
+        (Some(Severity::Error), n) => {
+            (Tone::Bad, format!("{n} findings; the first forbids making this as it is."))
+        }
+        (_, 1) => (Tone::Plain, "One finding; it forbids nothing.".into()),
+        (_, n) => (Tone::Plain, format!("{n} findings; none forbids making the parts.")),
+    };
+    let row = |f: &&Finding| {
+        vec![format!("{:?}", f.severity), f.place.parts.join(", "), f.what.clone(), f.remedy.clone()]
+    };
+    let head = ["severity", "parts", "what", "remedy"].map(Column::words).to_vec();
+    let table = Table { caption: "Findings".into(), head, rows: found.iter().map(row).collect() };
+    let tables = if found.is_empty() { vec![] } else { vec![table] };
+    Chapter { tone, headline, tables, ..Chapter::default() }
+}
+
 fn route_fact(r: &RouteReport) -> (String, String) {
     let parts = if r.parts.len() == 1 { r.parts[0].clone() } else { format!("{} parts", r.parts.len()) };
     let said = format!("{parts}, {} mm of air on each face, scale {:.5}", r.process.clearance.value, r.scale);

@@ -13,6 +13,7 @@ mod hands;
 mod interlock;
 mod load;
 mod make;
+mod mistaken;
 mod mold_map;
 mod molded;
 pub mod new;
@@ -31,6 +32,7 @@ mod run;
 mod schema;
 mod shell;
 mod told;
+mod unmolded;
 mod watch;
 mod words;
 
@@ -101,8 +103,9 @@ fn dispatch(args: &Args, watch: &Watch) -> Result<Told, Trouble> {
         Some(Verb::Draw(asked)) => draw::draw(&load::spec(&asked.file, puzzle, watch)?.joined()?, asked),
         Some(Verb::Verify { answer }) => questions::verify(answer),
         Some(Verb::Atlas(asked)) => atlas::atlas(asked, &args.common),
-        Some(Verb::Report { file, out, mold }) => {
-            run::report(file, out, mold.as_deref(), &args.common, watch)
+        Some(Verb::Report { file, out, mold, process }) => {
+            let mold = mold.as_deref().map(|part| run::MoldOf { part, process: process.as_deref() });
+            run::report(file, out, mold, &args.common, watch)
         }
         Some(Verb::New(asked)) => new::new(asked),
         Some(Verb::Completions { shell }) => shell::completions(*shell),

@@ -105,7 +105,7 @@ pub fn map(mold: &Mold, id: &str) -> Result<Map, String> {
     let mesh = Mesh::of(&pictured::solid(&mold.part), CreaseAngle::default());
     Ok(Map {
         picture: picture(mold, id, &mesh, &classes, &class_of)?,
-        table: table(mold, &classes),
+        table: table(mold, id, &classes),
         exhibit: exhibit(mold, id, mesh, &classes, class_of),
     })
 }
@@ -151,6 +151,7 @@ fn exhibit(mold: &Mold, id: &str, mesh: Mesh, classes: &[Class], class_of: Vec<u
         ],
         ways: [DVec3::Z, DVec3::NEG_Z].into_iter().chain(cores).collect(),
         ways_say: "The ways in which halves and cores leave.".into(),
+        buried: None,
     })
 }
 
@@ -200,7 +201,7 @@ fn picture(
     .map_err(|e| e.to_string())
 }
 
-fn table(mold: &Mold, classes: &[Class]) -> Table {
+fn table(mold: &Mold, id: &str, classes: &[Class]) -> Table {
     let least = mold.figures.draft.value;
     let total: f64 = classes.iter().map(|c| c.mm2).sum();
     let row = |c: &Class| {
@@ -219,5 +220,5 @@ fn table(mold: &Mold, classes: &[Class]) -> Table {
         Column::numbers("mm²"),
         Column::numbers("% of the surface"),
     ];
-    Table { caption: "Draft and undercut".into(), head, rows: classes.iter().map(row).collect() }
+    Table { caption: format!("Draft and undercut of {id}"), head, rows: classes.iter().map(row).collect() }
 }

@@ -4,8 +4,11 @@
 //! mold for use.
 
 use super::load::Placed;
+use super::make::{self, Checkers, Wish};
 use super::mold_map;
+use super::questions::argument;
 use super::told::Trouble;
+use super::unmolded::{self, Unmolded};
 use crate::assembly::PartIx;
 use crate::report::content::{Chapter, Tone};
 use crate::report::draw::figures::Figure;
@@ -18,7 +21,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 use weavelock_fab::mesh;
 use weavelock_fab::mold::figures::Figures;
-use weavelock_fab::mold::{self, Mold, MoldSpec, Piece, Route};
+use weavelock_fab::mold::{self, Mold, MoldError, MoldSpec, Piece, Route};
 use weavelock_fab::process;
 use weavelock_fab::report::Report;
 
@@ -32,7 +35,8 @@ pub enum MoldRoute {
     LostWax,
 }
 
-fn made(placed: &Placed, part: PartIx, route: MoldRoute) -> Result<Mold, Trouble> {
+/// The mold, or the part of which none can be begun with the reason.
+fn made(placed: &Placed, part: PartIx, route: MoldRoute) -> Result<Result<Mold, Unmolded>, Trouble> {
     let asm = &placed.joined.assembly;
     let word = |e: &dyn std::fmt::Display| Trouble::Word(format!("error: {e}"));
     let solid = asm.solid(part);
@@ -44,7 +48,11 @@ fn made(placed: &Placed, part: PartIx, route: MoldRoute) -> Result<Mold, Trouble
         MoldRoute::LostWax => Route::LostWax,
     };
     let figures = Figures::embedded().map_err(|e| word(&e))?;
-    mold::make(&body, &MoldSpec::new(&asm.part(part).id, route, figures)).map_err(|e| word(&e))
+    match mold::make(&body, &MoldSpec::new(&asm.part(part).id, route, figures)) {
+        Ok(mold) => Ok(Ok(mold)),
+        Err(MoldError::Input(what, hint)) => Ok(Err(Unmolded { body, why: format!("{what} ({hint})") })),
+        Err(e) => Err(word(&e)),
+    }
 }
 
 /// The pieces that are made; others stand for the OpenSCAD sources alone.
@@ -60,10 +68,11 @@ fn refused(mold: &Mold) -> String {
 
 /// The mold opened along its pull, the part between; `Err` in words where there is none.
 pub fn figure(placed: &Placed, part: PartIx, route: MoldRoute) -> Result<Result<Figure, String>, Trouble> {
-    let mold = made(placed, part, route)?;
-    if mold.pieces.is_empty() {
-        return Ok(Err(refused(&mold)));
-    }
+    let mold = match made(placed, part, route)? {
+        Ok(mold) if mold.pieces.is_empty() => return Ok(Err(refused(&mold))),
+        Ok(mold) => mold,
+        Err(none) => return Ok(Err(format!("no mold: {}", none.why))),
+    };
     let (lo, hi) = mold.part.bounds();
     let gap = (hi - lo).max_element() * OPEN;
     let item = |k: usize, m: &mesh::Mesh, offset: DVec3| {
@@ -86,8 +95,14 @@ const OPEN: f64 = 0.8;
 
 /// The mold and its map of draft and undercut as exhibits, with what was measured; without a mold the map alone.
 pub fn exhibits(placed: &Placed, part: PartIx, route: MoldRoute) -> Result<(Vec<Exhibit>, Chapter), Trouble> {
-    let mold = made(placed, part, route)?;
     let id = &placed.joined.assembly.part(part).id;
+    let mold = match made(placed, part, route)? {
+        Ok(mold) => mold,
+        Err(none) => {
+            let (exhibit, chapter) = unmolded::shown(&none, id)?;
+            return Ok((vec![exhibit], chapter));
+        }
+    };
     let map = mold_map::map(&mold, id).map_err(|e| Trouble::Word(format!("error: a picture: {e}")))?;
     let (mut shown, mut chapter) = match mold.pieces.is_empty() {
         true => (vec![], no_mold(&mold, id)),
@@ -116,7 +131,9 @@ pub fn of_cast(placed: &Placed, made: &Report) -> (Vec<Exhibit>, Option<Chapter>
     let (mut shown, mut chapters) = (vec![], vec![]);
     for (part, route) in shapes.values().take(MOST_SHAPES) {
         match exhibits(placed, *part, *route) {
-            Ok((exhibits, chapter)) => {
+            Ok((exhibits, mut chapter)) => {
+                let id = &asm.part(*part).id;
+                chapter.facts.iter_mut().for_each(|f| f.0 = format!("{id}: {}", f.0));
                 shown.extend(exhibits);
                 chapters.push(chapter);
             }
@@ -130,6 +147,24 @@ pub fn of_cast(placed: &Placed, made: &Report) -> (Vec<Exhibit>, Option<Chapter>
         }
     }
     (shown, together(chapters, shapes.len()))
+}
+
+/// The mold that a part's process asks for: the one given, else the spec's. Without a word of either, and where the spec
+/// prints the part, two printed halves.
+pub fn route(placed: &Placed, part: PartIx, process: Option<&str>) -> Result<MoldRoute, Trouble> {
+    let wish = Wish { process: process.map(str::to_string), ..Wish::default() };
+    let recipe = make::recipe(placed, &wish, Checkers::None)?;
+    let id = &placed.joined.assembly.part(part).id;
+    let own = recipe.parts.get(id).filter(|_| process.is_none()).unwrap_or(&recipe.process);
+    match (by_process(own.route), process) {
+        (Some(route), _) => Ok(route),
+        (None, None) => Ok(MoldRoute::Rigid),
+        (None, Some(name)) => {
+            let hint =
+                "name one that casts, such as silicone-platinum or pu-resin; `weavelock processes` lists all";
+            Err(argument(format!("{name} prints the part itself: it needs no mold"), hint.into()).into())
+        }
+    }
 }
 
 fn by_process(route: process::Route) -> Option<MoldRoute> {

@@ -18,7 +18,7 @@ use weavelock_fab::process::{self, Process};
 pub struct Asked {
     #[arg(default_value = "weave.toml")]
     pub file: PathBuf,
-    /// Take the answer in brackets to every question, ask nothing
+    /// Take the answer that Enter gives to every question, ask nothing
     #[arg(long)]
     pub defaults: bool,
     /// Replace the file if it is there
@@ -35,9 +35,9 @@ struct Question {
 
 const QUESTIONS: [Question; 4] = [
     Question {
-        text: "Which weave, as [a,b,c] (over a, under b, each row shifted by c)?",
-        default: "[1,1,1]",
-        check: |text| Weave::parse_abc(text).map(|_| ()).map_err(|e| e.to_string()),
+        text: "Which weave: plain, twill or satin, or [a,b,c] (over a, under b, each row shifted by c)?",
+        default: "plain",
+        check: |text| Weave::parse_abc(abc(text)).map(|_| ()).map_err(|e| e.to_string()),
     },
     Question {
         text: "How many strands across and along (wefts x warps)?",
@@ -61,6 +61,14 @@ const QUESTIONS: [Question; 4] = [
         },
     },
 ];
+
+/// Weaves by their name, each the smallest that has it.
+const WEAVES: [(&str, &str); 3] = [("plain", "[1,1,1]"), ("twill", "[2,2,1]"), ("satin", "[4,1,2]")];
+
+/// What is said of a weave as `[a,b,c]`.
+fn abc(text: &str) -> &str {
+    WEAVES.iter().find(|w| w.0.eq_ignore_ascii_case(text.trim())).map_or(text, |w| w.1)
+}
 
 /// Wefts and warps, as "2 x 3".
 fn strands(text: &str) -> Result<[u32; 2], String> {
@@ -105,7 +113,7 @@ fn ask() -> Result<[String; 4], Trouble> {
     let mut answers = Vec::new();
     for q in &QUESTIONS {
         let answer = loop {
-            let _ = write!(std::io::stderr(), "{}\n  [{}] ", q.text, q.default);
+            let _ = write!(std::io::stderr(), "{}\n  [Enter: {}] ", q.text, q.default);
             let _ = std::io::stderr().flush();
             let line = lines.next().and_then(Result::ok).ok_or_else(|| {
                 Trouble::Word(
@@ -126,7 +134,7 @@ fn ask() -> Result<[String; 4], Trouble> {
 
 fn written([weave, count, pitch, process]: &[String; 4]) -> Result<String, Trouble> {
     let [wefts, warps] = strands(count).map_err(Trouble::Word)?;
-    let inner = weave.trim().trim_start_matches('[').trim_end_matches(']');
+    let inner = abc(weave).trim().trim_start_matches('[').trim_end_matches(']');
     let clearance = Process::find(process).map_or(f64::NAN, |p| p.clearance.value);
     Ok(format!(
         r#"# An assembly of woven tiles. Lengths along the cloth are in crossings; one crossing is the pitch.

@@ -20,12 +20,13 @@ use crate::repeats::Search;
 use crate::report::answer;
 use crate::report::content::{Answer, Chapter, Format, Picture};
 use crate::report::draw::{Size, figures};
-use crate::report::file::write_whole;
+use crate::report::file::{file_can_be_made, write_whole};
 use crate::report::page::{PageInput, page};
 use crate::report::viewer::Answers;
 use crate::spec::{Cut, Layout, Subject};
 use crate::watch::{All, Watch};
 use crate::weave::{Origin, Weave};
+use schemars::JsonSchema;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 use weavelock_fab::process::Route;
@@ -39,33 +40,45 @@ pub fn file(file: &Path, out: &Path, common: &Common, watch: &Watch) -> Result<T
     everything(load::spec(file, &common.puzzle, watch)?, out, common)
 }
 
+/// The mold that a page shows: of a part, as a process makes it (`None`: as the spec says).
+pub struct MoldOf<'a> {
+    pub part: &'a str,
+    pub process: Option<&'a str>,
+}
+
 /// The page alone, without making parts; with the mold of one part where that is asked for.
 pub fn report(
     file: &Path,
     out: &Path,
-    mold: Option<&str>,
+    mold: Option<MoldOf>,
     common: &Common,
     watch: &Watch,
 ) -> Result<Told, Trouble> {
+    file_can_be_made(out)?;
     let placed = load::spec(file, &common.puzzle, watch)?.joined()?;
-    let part = mold.map(|id| questions::part(&placed.joined, id)).transpose()?;
+    let of = |m: MoldOf| {
+        let part = questions::part(&placed.joined, m.part)?;
+        Ok::<_, Trouble>((part, molded::route(&placed, part, m.process)?))
+    };
+    let mold = mold.map(of).transpose()?;
     let asked = ask(&placed, common)?;
     let none = || Answer::not_run("`weavelock fab` makes the parts");
     let mut input = input(&placed, &asked, None, none(), none());
-    if let Some(part) = part {
-        let (exhibits, chapter) = molded::exhibits(&placed, part, molded::MoldRoute::Rigid)?;
+    if let Some((part, route)) = mold {
+        let (exhibits, chapter) = molded::exhibits(&placed, part, route)?;
         input.exhibits.extend(exhibits);
         input.molds = Answer::Given(chapter);
     }
     write_whole(out, page(&input).as_bytes())?;
     let headline = format!("The page is {}.", out.display());
     let chapter = Chapter { headline, ..Chapter::default() };
-    let files = Files { verb: "report", files: vec![out.display().to_string()] };
+    let files = ReportAnswer { verb: "report", files: vec![out.display().to_string()] };
     Ok(Told::new(News::Good, &files, &placed.spec.name, "Page", chapter))
 }
 
-#[derive(Serialize)]
-struct Files {
+/// Answer of `report`.
+#[derive(Serialize, JsonSchema)]
+pub struct ReportAnswer {
     verb: &'static str,
     files: Vec<String>,
 }
@@ -203,6 +216,7 @@ fn everything(loaded: Loaded, out: &Path, common: &Common) -> Result<Told, Troub
     let (exhibits, molds) = molded::of_cast(&placed, &made);
     input.exhibits.extend(exhibits);
     input.molds = molds.map_or(input.molds, Answer::Given);
+    input.findings = Answer::Given(make::findings_chapter(&made));
     keep("report.html", page(&input).as_bytes())?;
     let fab = cast.unwrap_or(fab);
     Ok(summary(&placed, asked, as_made, fab, files, out))
@@ -299,7 +313,7 @@ fn input(
         repeats: chapter(&asked.repeats),
         chirality: chapter(&asked.chirality),
         ledger,
-        findings: Answer::not_run("they stand with the parts as made"),
+        findings: Answer::not_run("`weavelock fab` makes the parts and tells what it finds"),
         parts,
         limits: LIMITS.map(String::from).to_vec(),
     }
@@ -325,18 +339,18 @@ fn lead(placed: &Placed) -> String {
         Subject::Meshes(meshes) if meshes.puzzle.is_some() => "of a puzzle".into(),
         Subject::Meshes(_) => "read from meshes".into(),
     };
-    format!(
-        "{} parts {what}, {} contact patches, {} mm to a unit.",
-        asm.parts.len(),
-        placed.joined.patches.len(),
-        asm.mm_per_unit
-    )
+    let unit = match &placed.spec.subject {
+        Subject::Woven(_) => format!("a pitch of {} mm", asm.mm_per_unit),
+        Subject::Meshes(_) => format!("a unit of {} mm", asm.mm_per_unit),
+    };
+    format!("{} parts {what}, {} contact patches, {unit}.", asm.parts.len(), placed.joined.patches.len())
 }
 
-#[derive(Serialize)]
-struct RunAnswer<'a> {
+/// Answer of `run`: what it wrote; the answers of the verbs are among the files.
+#[derive(Serialize, JsonSchema)]
+pub struct RunAnswer {
     verb: &'static str,
-    name: &'a str,
+    name: String,
     verdict: answer::Word,
     files: Vec<String>,
 }
@@ -354,7 +368,7 @@ fn summary(
         News::Other => words::verdict_word(&asked.check.json),
     };
     let news = News::of(asked.check.news == News::Good && fab.news == News::Good);
-    let answer = RunAnswer { verb: "run", name: &placed.spec.name, verdict, files };
+    let answer = RunAnswer { verb: "run", name: placed.spec.name.clone(), verdict, files };
     let mut chapters = vec![
         ("Does it lock?".to_string(), first_chapter(&asked.check)),
         ("How it goes together".into(), first_chapter(&asked.plan)),

@@ -5,6 +5,7 @@
 use super::atlas::AtlasAnswer;
 use super::draw::DrawAnswer;
 use super::exported::ExportAnswer;
+use super::run::{ReportAnswer, RunAnswer};
 use super::told::{News, Told, Trouble};
 use crate::chirality::answer::Hands;
 use crate::report::answer::fab::{FabAnswer, ProcessesAnswer};
@@ -35,6 +36,8 @@ pub fn schema() -> Result<Told, Trouble> {
         ("verify", schema_for!(Verified)),
         ("draw", schema_for!(DrawAnswer)),
         ("export", schema_for!(ExportAnswer)),
+        ("report", schema_for!(ReportAnswer)),
+        ("run", schema_for!(RunAnswer)),
         ("fab", schema_for!(FabAnswer)),
         ("processes", schema_for!(ProcessesAnswer)),
     ]);

@@ -108,8 +108,12 @@ impl From<Fault> for Trouble {
 
 impl From<WriteError> for Trouble {
     fn from(e: WriteError) -> Trouble {
-        Trouble::Word(format!(
-            "error: {e}\n  hint: choose a folder that you may write to, with room for the files; nothing was left behind"
-        ))
+        use std::io::ErrorKind;
+        let hint = match e.source.kind() {
+            ErrorKind::NotFound => "make the folder first, or name another",
+            ErrorKind::IsADirectory => "name a file in it",
+            _ => "choose a folder that you may write to, with room for the files; nothing was left behind",
+        };
+        Trouble::Word(format!("error: {e}\n  hint: {hint}"))
     }
 }

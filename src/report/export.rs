@@ -15,6 +15,8 @@ use std::fmt::Write;
 use std::io;
 use weavelock_fab::files::stl;
 use weavelock_fab::mesh::Mesh;
+use weavelock_fab::pinch;
+use weavelock_fab::shape::{self, Shape};
 use weavelock_fab::threemf::{self, Build, Model, Object};
 
 /// The part's vertices in mm, in place.
@@ -69,13 +71,27 @@ pub fn ply(asm: &Assembly, parts: &[PartIx]) -> Vec<u8> {
     ply::write(&whole)
 }
 
+/// The same mesh, but where it touches itself along an edge: there each wedge of material has the edge's ends for itself.
+fn two_to_an_edge(mesh: &Mesh) -> Mesh {
+    let facet = |t: usize| {
+        let [a, b, c] = mesh.corners(t);
+        let normal = (b - a).cross(c - a).normalize_or_zero();
+        shape::Facet { corners: mesh.triangles[t].to_vec(), normal }
+    };
+    let facets = (0..mesh.triangles.len()).map(facet).collect();
+    let parted = pinch::parted(&Shape { vertices: mesh.vertices.clone(), facets });
+    let corners = |f: &shape::Facet| [f.corners[0], f.corners[1], f.corners[2]];
+    Mesh { triangles: parted.facets.iter().map(corners).collect(), vertices: parted.vertices }
+}
+
 /// 3MF by the core specification: an object for each part, shifted together so that all coordinates are positive.
 pub fn threemf(asm: &Assembly, parts: &[PartIx]) -> io::Result<Vec<u8>> {
     let low = parts.iter().flat_map(|&p| placed(asm, p)).fold(DVec3::INFINITY, DVec3::min);
     let object = |&part: &PartIx| {
         let triangles = asm.solid(part).triangles().collect();
         let vertices = placed(asm, part).iter().map(|v| *v - low).collect();
-        Object { name: asm.part(part).id.clone(), mesh: stl::snapped(&Mesh { vertices, triangles }) }
+        let written = stl::snapped(&Mesh { vertices, triangles });
+        Object { name: asm.part(part).id.clone(), mesh: two_to_an_edge(&written) }
     };
     let items = |(k, &p): (usize, &PartIx)| (k, DVec3::ZERO, asm.part(p).id.clone());
     threemf::write(&Model {

@@ -16,6 +16,24 @@ pub struct WriteError {
     pub source: io::Error,
 }
 
+/// Finds out before the work that ends in a file whether there is a folder for it, and no folder in its place.
+pub fn file_can_be_made(path: &Path) -> Result<(), WriteError> {
+    let folder = path.parent().filter(|f| !f.as_os_str().is_empty());
+    let (kind, why) = match folder {
+        _ if path.is_dir() || path.file_name().is_none() => {
+            (io::ErrorKind::IsADirectory, "this is a folder".into())
+        }
+        Some(folder) if !folder.exists() => {
+            (io::ErrorKind::NotFound, format!("there is no folder {}", folder.display()))
+        }
+        Some(folder) if !folder.is_dir() => {
+            (io::ErrorKind::NotADirectory, format!("{} is no folder", folder.display()))
+        }
+        _ => return Ok(()),
+    };
+    Err(WriteError { path: path.to_path_buf(), source: io::Error::new(kind, why) })
+}
+
 /// Writes beside the target, then renames over it.
 pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), WriteError> {
     let beside = beside(path);

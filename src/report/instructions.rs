@@ -19,6 +19,8 @@ pub struct Instructions {
     /// What is to be known before: how firm the plan is, what bends.
     pub words: Vec<String>,
     pub needs: Vec<Need>,
+    /// What it becomes.
+    pub whole: Picture,
     /// In the order of assembly.
     pub steps: Vec<Picture>,
 }
@@ -35,11 +37,14 @@ pub fn page(all: &Instructions) -> String {
     h.raw("<meta http-equiv=\"Content-Security-Policy\" content=\"").text(POLICY).raw("\">\n");
     h.raw("<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>")
         .text(&all.title);
-    h.raw("</title>\n<style>\n").raw(include_str!("instructions.css")).raw("</style>\n</head>\n<body>\n<h1>");
-    h.text(&all.title).raw("</h1>\n");
+    h.raw("</title>\n<style>\n").raw(include_str!("instructions.css")).raw("</style>\n</head>\n<body>\n");
+    h.raw("<header><div>\n<h1>").text(&all.title).raw("</h1>\n");
     for w in &all.words {
         h.raw("<p>").text(w).raw("</p>\n");
     }
+    h.raw("</div>\n");
+    figure(&mut h, &all.whole);
+    h.raw("</figure></header>\n");
     h.raw("<section class=\"needs\" aria-label=\"What is needed\">\n");
     for need in &all.needs {
         figure(&mut h, &need.picture);

@@ -1,6 +1,6 @@
 //! Takes a plan, gives the table of its moves in the order of assembly, as a person at the bench follows them.
 //!
-//! Not promised: digits beyond those printed; the JSON answer has them all.
+//! Not promised: digits beyond those printed, nor long lists of parts whole; the JSON answer has them all.
 
 use super::content::{Column, Table};
 use super::words::decimal;
@@ -23,8 +23,8 @@ fn rows(assembly: &Assembly, step: &Step, number: usize) -> Vec<Vec<String>> {
     let movers = step.motion.movers(&step.parts);
     let kept = format!("{:.2}", step.clear * assembly.mm_per_unit);
     let onto = match step.ends {
-        Ends::Apart => step.stays.join(", "),
-        Ends::Inside => format!("{} (already together)", step.stays.join(", ")),
+        Ends::Apart => listed(&step.stays),
+        Ends::Inside => format!("{} (already together)", listed(&step.stays)),
     };
     let row = |(k, (parts, motion)): (usize, &(&[String], Rigid))| {
         let first = |text: &str| if k == 0 { text.to_owned() } else { String::new() };
@@ -33,6 +33,16 @@ fn rows(assembly: &Assembly, step: &Step, number: usize) -> Vec<Vec<String>> {
         vec![first(&number.to_string()), parts.join(", "), way, first(&kept), first(&onto)]
     };
     movers.iter().enumerate().map(row).collect()
+}
+
+/// Most ids in a cell: of hundreds of parts the table would be a book.
+const MOST_IDS: usize = 12;
+
+fn listed(ids: &[String]) -> String {
+    match ids.len().checked_sub(MOST_IDS) {
+        None | Some(0) => ids.join(", "),
+        Some(more) => format!("{} and {more} more", ids[..MOST_IDS].join(", ")),
+    }
 }
 
 /// The motion backward, in words.

@@ -88,7 +88,16 @@ fn part<'t>(reader: &mut Reader<'t>, item: &Field<'t>) -> Option<MeshPartSpec> {
 
 fn mesh<'t>(reader: &mut Reader<'t>, field: &Field<'t>) -> Option<PathBuf> {
     let hint = "the path of an STL, OBJ or 3MF file, relative to this one";
-    let path = Path::new(reader.text(field, hint)?);
+    let text = reader.text(field, hint)?;
+    if text.contains('\\') && !cfg!(windows) {
+        reader.fault(
+            field,
+            format!("{} has a backslash", quoted(text)),
+            "write paths with /, as in \"parts/key.stl\"",
+        );
+        return None;
+    }
+    let path = Path::new(text);
     let end = path.extension().map(|end| end.to_string_lossy().to_lowercase());
     if end.is_some_and(|end| ["stl", "obj", "3mf"].contains(&end.as_str())) {
         return Some(path.to_path_buf());

@@ -17,6 +17,7 @@ mod woven;
 
 pub use pieces::piece_ids;
 pub use read::{Syntax, parse, read};
+pub use reader::nearest;
 pub use woven::MAX_SITES;
 
 use crate::assembly::Mobility;

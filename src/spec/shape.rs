@@ -22,14 +22,16 @@ pub enum SpecFile {
 #[derive(JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct WovenFile {
-    name: String,
+    /// By default the file's stem.
+    name: Option<String>,
     weave: WeaveTable,
     profile: Option<ProfileTable>,
     swatch: Option<SwatchTable>,
     piece: Option<Vec<PieceTable>>,
     /// With [[piece]]: ids of parts that may not move, or "rim".
     held: Option<Held>,
-    size: PitchTable,
+    /// By default a pitch of 20 mm.
+    size: Option<PitchTable>,
     fab: Option<FabTable>,
 }
 
@@ -66,7 +68,8 @@ enum BoundsWord {
 struct SwatchTable {
     wefts: u32,
     warps: u32,
-    cut: CutWord,
+    /// By default "window".
+    cut: Option<CutWord>,
     repeat: Option<u32>,
     phase: Option<i32>,
     held: Option<Held>,
@@ -101,13 +104,14 @@ struct PieceTable {
 #[serde(deny_unknown_fields)]
 struct PitchTable {
     /// A length with its unit, as "20 mm".
-    pitch: String,
+    pitch: Option<String>,
 }
 
 #[derive(JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct MeshesFile {
-    name: String,
+    /// By default the file's stem.
+    name: Option<String>,
     part: Vec<PartTable>,
     contact: Option<ContactTable>,
     size: Option<UnitTable>,
@@ -140,7 +144,7 @@ struct UnitTable {
 #[derive(JsonSchema)]
 #[serde(deny_unknown_fields)]
 struct FabTable {
-    process: Option<String>,
+    process: String,
     clearance: Option<String>,
     shrinkage: Option<std::collections::BTreeMap<String, String>>,
     /// Processes of single parts, by id.

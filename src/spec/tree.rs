@@ -77,6 +77,8 @@ pub fn toml(text: &str) -> (Table, Vec<SyntaxFault>) {
 fn hint(message: &str) -> &'static str {
     if message.contains("duplicate key") {
         "a key may stand once in a table; [[piece]] and [[part]] begin a new one each"
+    } else if message.contains("escape") {
+        "a backslash begins a sign of its own; write paths with /, as in \"parts/key.stl\""
     } else {
         "TOML: a line is `key = value` or `[table]`; strings stand in quotes"
     }

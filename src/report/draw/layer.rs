@@ -53,6 +53,12 @@ impl Stage {
         let most = triangles.iter().flat_map(|f| f.seen).map(|p| p.z.abs()).fold(0.0, f64::max);
         Stage { triangles, tie: most * TIE }
     }
+
+    /// Where the triangles of an item stand: they come in the order of their items.
+    pub fn of_item(&self, item: u32) -> Range<usize> {
+        let all = &self.triangles;
+        all.partition_point(|f| f.item < item)..all.partition_point(|f| f.item <= item)
+    }
 }
 
 /// Twice the signed area on the plane.

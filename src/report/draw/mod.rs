@@ -11,6 +11,7 @@ pub mod arcs;
 pub mod camera;
 pub mod figures;
 pub mod glyph;
+mod hidden;
 pub mod image;
 mod ink;
 mod layer;

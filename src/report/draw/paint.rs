@@ -53,11 +53,12 @@ pub fn render_with(scene: &Scene, size: Size, pen: Pen) -> Image {
     let camera = Camera::fit(&scene.view, scene.items.iter().flat_map(|i| i.points()), size);
     let stage = Stage::of(scene, &camera, SAMPLES);
     let pens = Pens::of(size.width().min(size.height()), SAMPLES);
-    let bin = |keep: &dyn Fn(u32) -> bool| bins(&stage, size, pens.reach(), keep);
-    let opacity = |i: u32| scene.items[i as usize].opacity;
+    let solid = |i: u32| scene.items[i as usize].opacity == Opacity::Solid;
+    let ghost =
+        |(i, alpha): (u32, f64)| (alpha, bins(&stage, stage.of_item(i), size, pens.reach(), &|_| true));
     let studio = Studio {
-        solid: bin(&|i| opacity(i) == Opacity::Solid),
-        ghosts: ghosts(scene, &camera).into_iter().map(|(i, alpha)| (alpha, bin(&|k| k == i))).collect(),
+        solid: bins(&stage, 0..stage.triangles.len(), size, pens.reach(), &solid),
+        ghosts: ghosts(scene, &camera).into_iter().map(ghost).collect(),
         light: Light::of(scene, &scene.view),
         pen,
         look: Look { scene, stage: &stage, camera: &camera, samples: SAMPLES },
@@ -86,11 +87,12 @@ fn ghosts(scene: &Scene, camera: &Camera) -> Vec<(u32, f64)> {
     found
 }
 
-fn bins(stage: &Stage, size: Size, reach: i64, keep: &dyn Fn(u32) -> bool) -> Bins {
+/// The triangles among these whose item is kept, by the bands that they reach into.
+fn bins(stage: &Stage, among: Range<usize>, size: Size, reach: i64, keep: &dyn Fn(u32) -> bool) -> Bins {
     let bands = size.height().div_ceil(BAND as u32) as usize;
     let mut bins = vec![Vec::new(); bands];
     let tall = (BAND * SAMPLES) as f64;
-    for (k, f) in stage.triangles.iter().enumerate().filter(|(_, f)| keep(f.item)) {
+    for (k, f) in among.clone().zip(&stage.triangles[among]).filter(|(_, f)| keep(f.item)) {
         let ys = f.seen.map(|p| p.y);
         let lo = ys.iter().copied().fold(f64::INFINITY, f64::min) - reach as f64 - 1.0;
         let hi = ys.iter().copied().fold(f64::NEG_INFINITY, f64::max) + reach as f64 + 1.0;
@@ -128,10 +130,13 @@ impl Studio<'_> {
         sheets.insert(0, self.inked(solid, 1.0));
         let mut bytes = Vec::with_capacity(rows * self.size.width() as usize * 4);
         let mut known = Vec::new();
+        // Of many ghosts few lie over one column of pixels.
+        let over: Vec<Vec<&Sheet>> =
+            (0..self.size.width() as usize).map(|x| over_column(&sheets, x)).collect();
         for y in 0..rows {
-            for x in 0..self.size.width() as usize {
+            for (x, sheets) in over.iter().enumerate() {
                 known.clear();
-                bytes.extend(self.pixel(&sheets, x, top + y, &mut known));
+                bytes.extend(self.pixel(sheets, x, top + y, &mut known));
             }
         }
         bytes
@@ -162,7 +167,7 @@ impl Studio<'_> {
     }
 
     /// Mean of the pixel's samples as bytes.
-    fn pixel(&self, sheets: &[Sheet], x: usize, y: usize, known: &mut Known) -> [u8; 4] {
+    fn pixel(&self, sheets: &[&Sheet], x: usize, y: usize, known: &mut Known) -> [u8; 4] {
         let mut sum = [0.0; 4];
         for sy in 0..SAMPLES {
             for sx in 0..SAMPLES {
@@ -174,7 +179,7 @@ impl Studio<'_> {
     }
 
     /// Premultiplied linear colour of one sample.
-    fn sample(&self, sheets: &[Sheet], x: usize, y: usize, known: &mut Known) -> [f64; 4] {
+    fn sample(&self, sheets: &[&Sheet], x: usize, y: usize, known: &mut Known) -> [f64; 4] {
         let mut colour = match self.look.scene.background {
             Background::Transparent => [0.0; 4],
             Background::Plain(Colour(c)) => [c[0], c[1], c[2], 1.0],
@@ -225,6 +230,15 @@ impl Studio<'_> {
         let blend: DVec3 = (0..3).map(|k| item.mesh.normals[t.normals[k] as usize] * weight(k)).sum();
         item.pose.transform_vector3(blend).try_normalize().unwrap_or(n)
     }
+}
+
+/// The sheets with samples in a column of pixels, in their order.
+fn over_column(sheets: &[Sheet], x: usize) -> Vec<&Sheet> {
+    let samples = x * SAMPLES..(x + 1) * SAMPLES;
+    let over = |s: &&Sheet| {
+        s.layer.first_column < samples.end && samples.start < s.layer.first_column + s.layer.width
+    };
+    sheets.iter().filter(over).collect()
 }
 
 /// Item and smooth surface.

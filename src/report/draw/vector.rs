@@ -12,7 +12,8 @@ use super::paint::{Pen, render_with};
 use super::palette::INK;
 use super::scene::{Item, Opacity, Scene};
 use crate::report::viewer::base64;
-use glam::DVec3;
+use glam::{DVec2, DVec3};
+use rayon::prelude::*;
 use std::collections::BTreeSet;
 use std::fmt::Write;
 use std::io;
@@ -70,15 +71,38 @@ fn strokes(scene: &Scene, size: Size) -> Vec<Stroke> {
     };
     let page = Page { scene, camera: &camera, stage: &stage, pens };
     all.extend(page.lines(&solid, &numbers(&is_solid), 1.0));
-    for k in numbers(&|i| matches!(i.opacity, Opacity::Ghost { .. })) {
-        let mut own = layer(&stage, size, |i| i == k);
+    let ghosts = numbers(&|i| matches!(i.opacity, Opacity::Ghost { .. }));
+    let lines_of = |&k: &u32| {
+        let Opacity::Ghost { alpha } = scene.items[k as usize].opacity else { return vec![] };
+        let mut own = alone(&stage, size, k);
         own.hide_behind(&solid);
-        if let Opacity::Ghost { alpha } = scene.items[k as usize].opacity {
-            all.extend(page.lines(&own, &[k], alpha.clamp(0.0, 1.0).sqrt()));
-        }
-    }
+        page.lines(&own, &[k], alpha.clamp(0.0, 1.0).sqrt()).into()
+    };
+    let drawn: Vec<Vec<Stroke>> = ghosts.par_iter().map(lines_of).collect();
+    all.extend(drawn.into_iter().flatten());
     all.retain(|s| !s.path.is_empty());
     all
+}
+
+/// What is seen of one item where no other is, in a window that holds it with a sample to spare on each side.
+fn alone(stage: &Stage, size: Size, item: u32) -> Layer {
+    let (all, own) = (&stage.triangles, stage.of_item(item));
+    let (mut lo, mut hi) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
+    for p in all[own.clone()].iter().flat_map(|f| f.seen) {
+        (lo, hi) = (lo.min(p.truncate()), hi.max(p.truncate()));
+    }
+    let most = [size.width(), size.height()].map(|n| i64::from(n) * FINE as i64);
+    // Nothing is seen of an item without triangles: its window is empty (infinite bounds end at the picture's border).
+    let span = |lo: f64, hi: f64, most: i64| {
+        let from = (lo.floor() - 1.0).clamp(0.0, most as f64) as i64;
+        from..((hi.ceil() + 1.0).clamp(0.0, most as f64) as i64).max(from)
+    };
+    let (columns, rows) = (span(lo.x, hi.x, most[0]), span(lo.y, hi.y, most[1]));
+    let mut layer = Layer::empty(columns.start as usize..columns.end as usize, rows, stage.tie);
+    for k in own {
+        layer.draw(k as u32, &all[k].seen);
+    }
+    layer
 }
 
 fn layer(stage: &Stage, size: Size, keep: impl Fn(u32) -> bool) -> Layer {
@@ -168,11 +192,8 @@ impl Page<'_> {
             f.item == near.item && near.facets.contains(&facet)
         };
         (-1..=1).flat_map(|dy| (-1..=1).map(move |dx| (x + dx, y + dy))).any(|(x, y)| {
-            let inside = (0..layer.width as i64).contains(&x) && (0..layer.rows as i64).contains(&y);
-            inside && {
-                let cell = layer.nearest[y as usize * layer.width + x as usize];
-                cell != NOTHING && own(cell)
-            }
+            let cell = usize::try_from(x).ok().and_then(|x| layer.at(x, y)).map(|k| layer.nearest[k]);
+            cell.is_some_and(|cell| cell != NOTHING && own(cell))
         })
     }
 }

@@ -173,9 +173,10 @@ function controls(root, shown, canvas, exhibits) {
     state.section.axis = k - 1;
     // The half toward the viewer goes.
     if (k) flip.checked = state.section.flip = frame(state.view.azimuth, state.view.elevation).back[k - 1] < 0;
+    place.disabled = flip.disabled = !k;
     change();
   });
-  const place = range({ min: -1, max: 1, step: 0.005, value: 0 }, (v) => (state.section.at = v));
+  const place = range({ min: -1, max: 1, step: 0.005, value: 0, disabled: true, "aria-label": "Section at" }, (v) => (state.section.at = v));
   const check = (onchange, checked = false) => {
     const c = element("input", { type: "checkbox", checked, onchange: () => {
       onchange(c.checked);
@@ -184,6 +185,7 @@ function controls(root, shown, canvas, exhibits) {
     return c;
   };
   const flip = check((on) => (state.section.flip = on));
+  flip.disabled = true;
   const explode = range({ min: 0, max: 1.5, step: 0.01, value: 0 }, (v) => (state.explode = v));
   const arrows = check((on) => {
     state.signs = on;
@@ -204,7 +206,7 @@ function controls(root, shown, canvas, exhibits) {
     ask();
   };
   const views = element("span", { class: "views", role: "group", "aria-label": "Views" },
-    button("Home", "The first view (0)", home),
+    button("Home", "Home: the first view (0)", home),
     ...[["Top", -90, 90], ["Front", -90, 0], ["Side", 0, 0]].map(([name, azimuth, elevation]) => button(name, name + " view", () => {
       Object.assign(state.view, { azimuth, elevation });
       ask();

@@ -3,7 +3,7 @@
 //!
 //! Not promised: pieces that are closed; they are shares of one surface.
 
-use super::colours::Scheme;
+use super::colours::{Rgb, Scheme};
 use super::exhibit::{self, Exhibit, ShownPlan, ShownSigns, Thing};
 use super::{pack, signs};
 use crate::report::draw::mesh::{Edge, EdgeKind};
@@ -27,6 +27,16 @@ pub struct Classed {
     /// Directions to be drawn as arrows from the middle outward, with what they are.
     pub ways: Vec<DVec3>,
     pub ways_say: String,
+    /// What lies inside and is seen when the surface is faint.
+    pub buried: Option<Buried>,
+}
+
+/// Solids inside the surface, with what is said of them; mm.
+pub struct Buried {
+    pub name: &'static str,
+    pub says: String,
+    pub colour: Rgb,
+    pub meshes: Vec<Mesh>,
 }
 
 /// The exhibit of a surface in classes; lengths in mm.
@@ -38,7 +48,17 @@ pub fn of_classes(c: Classed) -> Exhibit {
     made.schemes = c.schemes;
     made.plans = vec![ShownPlan { name: "None".into(), says: c.says, steps: vec![] }];
     made.signs = arrows(&c.ways, c.ways_say, made.radius).into_iter().collect();
+    made.signs.extend(c.buried.iter().flat_map(|b| seen_inside(b, made.middle)));
     made
+}
+
+fn seen_inside(b: &Buried, middle: DVec3) -> impl Iterator<Item = ShownSigns> + '_ {
+    b.meshes.iter().map(move |mesh| {
+        let mut mesh = mesh.clone();
+        mesh.vertices.iter_mut().for_each(|v| *v -= middle);
+        let shape = pack::shape(&mesh);
+        ShownSigns { name: b.name, says: b.says.clone(), colour: b.colour, shape, inside: true }
+    })
 }
 
 /// For each class the mesh that keeps only its facets, with its outline as creases.
