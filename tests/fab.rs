@@ -1,5 +1,7 @@
 //! Promises of `weavelock-fab`: clearance, allowance, files, measurements, refusals.
 
+#[path = "fab/large.rs"]
+mod large;
 #[path = "fab/made.rs"]
 mod made_otherwise;
 #[path = "fab/solids.rs"]

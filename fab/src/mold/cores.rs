@@ -52,7 +52,8 @@ pub fn filled(ready: &Ready) -> Solid {
     let (lo, hi) = mesh.bounds();
     let up = sweep::swept(&ready.solid, (mesh, &tree), Way::up(hi.z + 1.0));
     let down = sweep::swept(&ready.solid, (mesh, &tree), Way::down(lo.z - 1.0));
-    up.common(&down)
+    // Where both sweeps end on the same walls they share slivers, and a parting would step around those.
+    up.common(&down).thick(FINE)
 }
 
 /// `tan`: of the draft of cores. `block`: corners of the mold's block.
@@ -150,7 +151,8 @@ fn room(
     let out = Way::up(lid);
     let straight = sweep::swept(&seen, (&mesh, &Bvh::new(&mesh)), out);
     let wide = Solid::all(sweep::wedges(&mesh, out, lid, tan, |_| true));
-    let whole = straight.with(&wide).minus(&shade).thick(FINE);
+    // What is closed under moving outward has no hollow: one is round-off of the union.
+    let whole = straight.with(&wide).minus(&shade).thick(FINE).without_hollows();
     (!whole.is_empty()).then_some(whole).map(|w| back(&w, turn)).transpose()
 }
 
