@@ -78,8 +78,7 @@ pub fn of_mesh(id: &str, master: &Mesh, scale: &Scale) -> Vec<Finding> {
     match crossings(master).as_deref() {
         Ok([]) => {}
         Ok([c, ..]) => {
-            let what =
-                "the clearance makes the surface cross itself; nothing is written for the part".to_string();
+            let what = "the surface as made crosses itself; nothing is written for the part".to_string();
             found.push(error(id, vec![scale.down(c.at)], what, CROSSING));
         }
         Err(crowded) => {
