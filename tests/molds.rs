@@ -349,6 +349,7 @@ fn what_can_not_be_molded_is_refused_with_a_hint() {
         (two, "several bodies"),
         (hollow, "hollow"),
         (Mesh::default(), "no triangles"),
+        (Mesh { triangles: vec![[0, 1, 2]; 300_001], ..cube() }, "up to 300000"),
     ] {
         let said = refused(&part, &order);
         assert!(said.contains(word) && said.contains("hint"), "{word}: {said}");

@@ -44,8 +44,17 @@ pub struct Checked {
     pub mended: Option<String>,
 }
 
+/// Triangles of a part that is molded. Its shadows, sweeps and halves are gone through some dozen times: a part of 100,000
+/// is a matter of seconds, and more detail than this is below what a printer of molds makes.
+const MOST_TRIANGLES: usize = 300_000;
+
 /// Refuses what is no plain solid of one body.
 pub fn checked(part: &Mesh) -> Result<Checked, MoldError> {
+    if part.triangles.len() > MOST_TRIANGLES {
+        let what =
+            format!("the part has {} triangles; molds take up to {MOST_TRIANGLES}", part.triangles.len());
+        return Err(unfit(what, "make its mesh coarser: what is below a layer is not seen in a casting"));
+    }
     if part.triangles.is_empty() {
         return Err(unfit("the part has no triangles", "give a closed mesh"));
     }
