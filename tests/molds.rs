@@ -263,22 +263,6 @@ fn a_fin_that_the_printer_can_not_make_is_told_with_its_place() {
     assert!(fins(3.0).1.is_empty());
 }
 
-/// Bores of two pipes that meet: sweeps end on one another's walls. What comes is whole, or nothing does and it is said.
-#[test]
-fn a_tee_is_molded_whole_or_refused() {
-    for (run, branch) in [(12.0, 10.0), (10.0, 10.0)] {
-        let pipe = |out: f64, reach: f64, from: f64| frustum(DVec3::Z * from, reach - from, out, out);
-        let along = |m: &Mesh| solid(&m.map(|v| DVec3::new(v.z, v.x, v.y)));
-        let outer = along(&pipe(run, 35.0, -35.0)).with(&solid(&pipe(branch, 35.0, 0.0)));
-        let inner = along(&pipe(run - 4.0, 36.0, -36.0)).with(&solid(&pipe(branch - 4.0, 36.0, 0.0)));
-        let mold = make(&outer.minus(&inner).mesh(), &spec("tee", Route::Rigid)).unwrap();
-        match mold.pieces.is_empty() {
-            true => assert!(mold.findings.iter().any(|f| f.severity == Severity::Error), "{run} {branch}"),
-            false => sound(&measured(&mold)),
-        }
-    }
-}
-
 #[test]
 fn a_gang_mold_has_a_sprue_for_each_cavity() {
     let order = MoldSpec { count: 3, ..spec("gang", Route::Rigid) };

@@ -52,8 +52,7 @@ pub fn filled(ready: &Ready) -> Solid {
     let (lo, hi) = mesh.bounds();
     let up = sweep::swept(&ready.solid, (mesh, &tree), Way::up(hi.z + 1.0));
     let down = sweep::swept(&ready.solid, (mesh, &tree), Way::down(lo.z - 1.0));
-    // Where both sweeps end on the same walls they share slivers, and a parting would step around those.
-    up.common(&down).thick(FINE)
+    up.common(&down)
 }
 
 /// `tan`: of the draft of cores. `block`: corners of the mold's block.
@@ -151,8 +150,7 @@ fn room(
     let out = Way::up(lid);
     let straight = sweep::swept(&seen, (&mesh, &Bvh::new(&mesh)), out);
     let wide = Solid::all(sweep::wedges(&mesh, out, lid, tan, |_| true));
-    // What is closed under moving outward has no hollow: one is round-off of the union.
-    let whole = straight.with(&wide).minus(&shade).thick(FINE).without_hollows();
+    let whole = straight.with(&wide).minus(&shade).thick(FINE);
     (!whole.is_empty()).then_some(whole).map(|w| back(&w, turn)).transpose()
 }
 

@@ -3,8 +3,6 @@
 //! The pull of the search is tried, and a few others: the fewest cores win. Not promised: that a mold is found where there
 //! is one; where none is, the silicone route is.
 
-use crate::bvh::Bvh;
-use crate::cross;
 use crate::mesh::{Mesh, area};
 use crate::mold::checks::core_name;
 use crate::mold::cores::{self, Core, Cored};
@@ -13,7 +11,7 @@ use crate::mold::make::{blank, finding, push};
 use crate::mold::plan::Plan;
 use crate::mold::prepare::{self, Ready};
 use crate::mold::rigid::{self, Tools};
-use crate::mold::{Kind, Mold, MoldError, MoldSpec, Piece, parting, pictures, two_part};
+use crate::mold::{Kind, Mold, MoldError, MoldSpec, parting, pictures, two_part};
 use crate::report::{Finding, Severity};
 use crate::solid::Solid;
 use glam::DVec3;
@@ -94,11 +92,6 @@ fn candidate(mut ready: Ready, spec: &MoldSpec) -> Result<Result<Candidate, Stri
 const KEYS: usize = 3;
 const BOLTS: usize = 2;
 
-/// Whether no triangles of a piece are known to cross: nothing that is measured on others means anything.
-fn plain(piece: &Piece) -> bool {
-    !matches!(cross::within(&piece.mesh, &Bvh::new(&piece.mesh)).as_deref(), Ok([_, ..]))
-}
-
 /// The mold of a candidate, or why it can not be made.
 fn built(candidate: Candidate, spec: &MoldSpec) -> Result<Result<Mold, String>, MoldError> {
     let Candidate { ready, cored, plan, .. } = candidate;
@@ -118,9 +111,6 @@ fn built(candidate: Candidate, spec: &MoldSpec) -> Result<Result<Mold, String>, 
     }
     if let Some(wrong) = mold.findings.iter().find(|f| f.severity == Severity::Error) {
         return Ok(Err(wrong.what.clone()));
-    }
-    if let Some(torn) = mold.pieces.iter().find(|p| !plain(p)) {
-        return Ok(Err(format!("the {} would cross itself where sweeps meet in their faces", torn.name)));
     }
     for (k, core) in cored.cores.iter().enumerate() {
         push(&mut mold, &format!("{}-room", core_name(k)), Kind::Room, &core.room, DVec3::ZERO, 0);

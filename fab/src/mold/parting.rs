@@ -57,11 +57,7 @@ pub fn plane(part: &Mesh, looks: &[Look], snap: f64) -> Plane {
     if highest <= lowest + WALL_IN_SNAPS * snap {
         return Plane { height: (lowest + highest) / 2.0, wrong: 0.0 };
     }
-    let best = compromise(part, looks);
-    // A strip one snap wide around the part is round-off of its corners.
-    let (lo, hi) = part.bounds();
-    let round_off = 2.0 * snap * (hi - lo).truncate().element_sum();
-    Plane { wrong: if best.wrong <= round_off { 0.0 } else { best.wrong }, ..best }
+    compromise(part, looks)
 }
 
 /// Heights between which a compromise is looked for.
