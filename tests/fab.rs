@@ -1,5 +1,7 @@
 //! Promises of `weavelock-fab`: clearance, allowance, files, measurements, refusals.
 
+#[path = "fab/large.rs"]
+mod large;
 #[path = "fab/made.rs"]
 mod made_otherwise;
 #[path = "fab/solids.rs"]
@@ -233,7 +235,7 @@ fn read(name: &str) -> Mesh {
 fn bad_meshes_are_seen_and_the_good_twin_is_not() {
     let seen = |name: &str| {
         let mesh = read(name);
-        let crosses = !cross::within(&mesh, &Bvh::new(&mesh)).is_empty();
+        let crosses = !cross::within(&mesh, &Bvh::new(&mesh)).is_ok_and(|found| found.is_empty());
         (mesh.closure() == Closure::Closed, crosses, mesh.topology().bodies, mesh.volume() > 0.0)
     };
     assert_eq!(seen("cube"), (true, false, 1, true));

@@ -241,6 +241,28 @@ fn a_wrong_mold_is_found_out() {
     assert!(missed(&forgotten).join("; ").contains("high points without a way out"));
 }
 
+/// A slot of 0.1 mm in a block: the half that forms it has a fin that no printer makes. One of 3 mm is its good twin.
+#[test]
+fn a_fin_that_the_printer_can_not_make_is_told_with_its_place() {
+    let slotted = |wide: f64| {
+        let slot = cuboid(DVec3::new(15.0, -1.0, 10.0), DVec3::new(15.0 + wide, 21.0, 21.0));
+        solid(&cuboid(DVec3::ZERO, DVec3::new(30.0, 20.0, 20.0))).minus(&solid(&slot)).mesh()
+    };
+    let fins = |wide: f64| {
+        let report = measured(&make(&slotted(wide), &spec("slotted", Route::Rigid)).unwrap());
+        let told: Vec<_> = report.findings.into_iter().filter(|f| f.what.contains("has a fin of")).collect();
+        let fins: Vec<_> = report.pieces.into_iter().filter_map(|p| p.fin).collect();
+        assert_eq!(told.len(), fins.len());
+        assert!(told.iter().all(|f| f.severity == Severity::Warning && f.remedy.contains("slot")));
+        (told, fins)
+    };
+    let (told, found) = fins(0.1);
+    assert!(!found.is_empty() && found.iter().all(|f| (f.thin.thickness_mm - 0.1).abs() < 1e-4), "{found:?}");
+    let at = told.iter().flat_map(|f| &f.place.at);
+    assert!(at.into_iter().all(|p| p.x > 14.999 && p.x < 15.101 && p.z > 9.999), "{told:#?}");
+    assert!(fins(3.0).1.is_empty());
+}
+
 #[test]
 fn a_gang_mold_has_a_sprue_for_each_cavity() {
     let order = MoldSpec { count: 3, ..spec("gang", Route::Rigid) };
@@ -311,6 +333,7 @@ fn what_can_not_be_molded_is_refused_with_a_hint() {
         (two, "several bodies"),
         (hollow, "hollow"),
         (Mesh::default(), "no triangles"),
+        (Mesh { triangles: vec![[0, 1, 2]; 300_001], ..cube() }, "up to 300000"),
     ] {
         let said = refused(&part, &order);
         assert!(said.contains(word) && said.contains("hint"), "{word}: {said}");

@@ -16,6 +16,7 @@ const CROSSING: &str =
 const BODIES: &str = "take a smaller clearance; where the solid that came in has several bodies already, give each an id of its own";
 const PINCHED: &str =
     "move the bodies apart or let them overlap; where both sides of the edge are contact, give a clearance";
+const CROWDED: &str = "make its mesh anew with fewer triangles, above all where very many meet in one corner";
 const OURS: &str = "this is a fault of the program: please report it with the input";
 
 fn error(id: &str, at: Vec<DVec3>, what: String, remedy: &str) -> Finding {
@@ -74,10 +75,16 @@ pub fn of_mesh(id: &str, master: &Mesh, scale: &Scale) -> Vec<Finding> {
         found.push(error(id, vec![scale.down(at)], what, if pinched { PINCHED } else { SMALLER }));
         return found;
     }
-    if let Some(c) = crossings(master).first() {
-        let what =
-            "the clearance makes the surface cross itself; nothing is written for the part".to_string();
-        found.push(error(id, vec![scale.down(c.at)], what, CROSSING));
+    match crossings(master).as_deref() {
+        Ok([]) => {}
+        Ok([c, ..]) => {
+            let what = "the surface as made crosses itself; nothing is written for the part".to_string();
+            found.push(error(id, vec![scale.down(c.at)], what, CROSSING));
+        }
+        Err(crowded) => {
+            let what = format!("{crowded}; nothing is written for the part");
+            found.push(error(id, vec![], what, CROWDED));
+        }
     }
     let solids = master.shells().iter().filter(|v| **v > 0.0).count();
     if solids != 1 {

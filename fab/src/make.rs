@@ -414,6 +414,6 @@ fn contact_area(job: &Job, p: usize) -> f64 {
 pub(crate) const MM3_IN_CM3: f64 = 1000.0;
 
 /// Crossings of a mesh with itself, for `findings`.
-pub(crate) fn crossings(mesh: &Mesh) -> Vec<cross::Crossing> {
+pub(crate) fn crossings(mesh: &Mesh) -> Result<Vec<cross::Crossing>, cross::Crowded> {
     cross::within(mesh, &Bvh::new(mesh))
 }

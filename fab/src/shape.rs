@@ -123,18 +123,19 @@ impl Shape {
     /// The same solid with facets that are not planar cut into triangles, and for each new facet the old one.
     pub fn planar(&self) -> (Shape, Vec<usize>) {
         let (mut facets, mut from) = (vec![], vec![]);
+        let off = PLANE_ROUND_OFF * self.size();
         for (k, f) in self.facets.iter().enumerate() {
-            let parts = if self.is_planar(f) { vec![f.clone()] } else { self.cut(f) };
+            let parts = if self.is_planar(f, off) { vec![f.clone()] } else { self.cut(f) };
             from.extend(parts.iter().map(|_| k));
             facets.extend(parts);
         }
         (Shape { vertices: self.vertices.clone(), facets }, from)
     }
 
-    fn is_planar(&self, f: &Facet) -> bool {
+    fn is_planar(&self, f: &Facet, off: f64) -> bool {
         let heights = f.corners.iter().map(|&c| f.normal.dot(self.vertices[c as usize]));
         let (lo, hi) = heights.fold((f64::MAX, f64::MIN), |(l, h), x| (l.min(x), h.max(x)));
-        hi - lo <= PLANE_ROUND_OFF * self.size()
+        hi - lo <= off
     }
 
     fn cut(&self, f: &Facet) -> Vec<Facet> {
@@ -153,7 +154,9 @@ impl Shape {
         if let Some(v) = self.vertices.iter().position(|v| !within_reach(*v)) {
             return vec![fault(format!("vertex {v} is not a finite point within {LARGEST_COORDINATE} mm"))];
         }
-        let mut faults: Vec<Fault> = (0..self.facets.len()).filter_map(|f| self.facet_fault(f, at)).collect();
+        let size = self.size();
+        let mut faults: Vec<Fault> =
+            (0..self.facets.len()).filter_map(|f| self.facet_fault(f, size, at)).collect();
         if faults.is_empty() {
             faults.extend(self.open_edge().map(fault));
         }
@@ -163,7 +166,7 @@ impl Shape {
         faults
     }
 
-    fn facet_fault(&self, f: usize, at: &str) -> Option<Fault> {
+    fn facet_fault(&self, f: usize, size: f64, at: &str) -> Option<Fault> {
         let Facet { corners, normal } = &self.facets[f];
         let what = if corners.len() < 3 {
             "has fewer than three corners".to_string()
@@ -171,7 +174,7 @@ impl Shape {
             format!("names vertex {c} of {}", self.vertices.len())
         } else if !normal.is_finite() || (normal.length() - 1.0).abs() > UNIT_ROUND_OFF {
             format!("has a normal of length {}", normal.length())
-        } else if self.facet_area(f) < -PLANE_ROUND_OFF * self.size().powi(2) {
+        } else if self.facet_area(f) < -PLANE_ROUND_OFF * size.powi(2) {
             "has its corners clockwise, seen against its normal".to_string()
         } else {
             return None;

@@ -49,6 +49,7 @@ impl Solid {
         Mesh { vertices, triangles }
     }
 
+    /// Of what its surface encloses, never negative: also for a hollow taken for itself.
     pub fn volume(&self) -> f64 {
         self.0.volume()
     }
@@ -84,7 +85,16 @@ impl Solid {
         solids.pop().unwrap_or_else(Solid::nothing)
     }
 
-    /// Its separate bodies.
+    /// The same with its hollows filled.
+    pub fn without_hollows(&self) -> Solid {
+        let (bodies, outer) = (self.bodies(), |b: &Solid| b.mesh().volume() > 0.0);
+        if bodies.iter().all(outer) {
+            return self.clone();
+        }
+        Solid::all(bodies.into_iter().filter(outer).collect())
+    }
+
+    /// Its separate surfaces: of each body the outer one, and those of hollows, inside out.
     pub fn bodies(&self) -> Vec<Solid> {
         self.0.decompose().into_iter().map(Solid).collect()
     }
@@ -198,6 +208,15 @@ pub fn cuboid(lo: DVec3, hi: DVec3) -> Mesh {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn hollows_are_filled_and_what_stands_in_them_is_swallowed() {
+        let cube = |from: f64, to: f64| Solid::of(&cuboid(DVec3::splat(from), DVec3::splat(to))).unwrap();
+        let nested = cube(0.0, 9.0).minus(&cube(1.0, 8.0)).with(&cube(2.0, 3.0)).with(&cube(20.0, 21.0));
+        assert_eq!(nested.bodies().len(), 4);
+        let filled = nested.without_hollows();
+        assert!((filled.volume() - 730.0).abs() < 1e-9 && filled.bodies().len() == 2, "{}", filled.volume());
+    }
 
     #[test]
     fn a_box_less_a_smaller_one_keeps_the_difference() {

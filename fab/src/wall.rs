@@ -14,7 +14,7 @@ use std::collections::BTreeMap;
 
 /// Faces that are off parallel by no more than this are a wall, those that meet at a larger angle an edge: over the width
 /// of its own thickness a wall of 30 degrees thins by half, and a slicer's line no longer fits beside another.
-const PARALLEL: f64 = 30.0;
+pub(crate) const PARALLEL: f64 = 30.0;
 
 /// Where a part is thinnest, finished size.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -51,12 +51,22 @@ fn normal([a, b, c]: [DVec3; 3]) -> DVec3 {
 }
 
 fn thinnest(mesh: &Mesh, tree: &Bvh, least: f64) -> Option<Thin> {
+    let mut best = None;
+    opposed(mesh, tree, least, |_, thin| {
+        best = Some(thin);
+        thin.thickness_mm
+    });
+    best
+}
+
+/// Calls `found` with pairs of triangles that have a wall between them thinner than the limit, which is at first `least` mm
+/// and then what `found` gives.
+pub(crate) fn opposed(mesh: &Mesh, tree: &Bvh, least: f64, mut found: impl FnMut((u32, u32), Thin) -> f64) {
     let normals: Vec<DVec3> = (0..mesh.triangles.len()).map(|t| normal(mesh.corners(t))).collect();
     let opposed = -PARALLEL.to_radians().cos();
-    let mut best: Option<Thin> = None;
+    let mut limit = least;
     let mut todo = if tree.nodes.is_empty() { vec![] } else { vec![(0, 0)] };
     while let Some((i, j)) = todo.pop() {
-        let limit = best.map_or(least, |b| b.thickness_mm);
         if tree.boxes[i].distance_squared(&tree.boxes[j]) >= limit * limit {
             continue;
         }
@@ -67,20 +77,17 @@ fn thinnest(mesh: &Mesh, tree: &Bvh, least: f64) -> Option<Thin> {
             (Node::Branch { left, right }, _) => todo.extend([(left, j), (right, j)]),
             (_, Node::Branch { left, right }) => todo.extend([(i, left), (i, right)]),
             (Node::Leaf { first, count }, Node::Leaf { first: f, count: c }) => {
-                let pairs = tree
-                    .leaf(first, count)
-                    .iter()
-                    .flat_map(|&s| tree.leaf(f, c).iter().map(move |&t| (s, t)));
+                let other = tree.leaf(f, c);
+                let pairs = tree.leaf(first, count).iter().flat_map(|&s| other.iter().map(move |&t| (s, t)));
                 for (s, t) in pairs.filter(|&(s, t)| s != t) {
                     if normals[s as usize].dot(normals[t as usize]) < opposed {
-                        let limit = best.map_or(least, |b| b.thickness_mm);
-                        best = across(mesh, (s, t), normals[s as usize], limit).or(best);
+                        let thin = across(mesh, (s, t), normals[s as usize], limit);
+                        limit = thin.map_or(limit, |thin| found((s, t), thin));
                     }
                 }
             }
         }
     }
-    best
 }
 
 /// The wall between two triangles, where it is thinner than `limit` and the way from one to the other is inside.

@@ -176,10 +176,12 @@ pub fn fab_chapter(report: &Report, out: &Path, more: &[Check]) -> Chapter {
     Chapter { tone, headline, words, facts, tables, ..Chapter::default() }
 }
 
-/// A finding in a line, with the parts that it is about.
+/// A finding in a line, with the parts that it is about and its first place, mm.
 fn finding(f: &Finding) -> String {
     let of = if f.place.parts.is_empty() { String::new() } else { f.place.parts.join(", ") + ": " };
-    format!("{:?}: {of}{} ({})", f.severity, f.what, f.remedy)
+    let place =
+        f.place.at.first().map_or(String::new(), |p| format!(", at ({:.2}, {:.2}, {:.2})", p.x, p.y, p.z));
+    format!("{:?}: {of}{}{place} ({})", f.severity, f.what, f.remedy)
 }
 
 /// What whoever makes the parts has to know, worst first.

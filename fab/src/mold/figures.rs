@@ -26,6 +26,8 @@ macro_rules! figures {
 figures! {
     /// Between the cavity and the outside of a printed mold.
     wall: "mm", 1.0, 100.0;
+    /// Thinnest rib or fin that the printer of the mold makes.
+    least_wall: "mm", 0.01, 20.0;
     /// Silicone around the master.
     silicone_wall: "mm", 3.0, 100.0;
     /// Least draft of a wall of a rigid mold.

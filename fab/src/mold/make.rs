@@ -12,6 +12,7 @@ use crate::mold::{pour, surroundings, tree, two_part};
 use crate::report::{Finding, Place, Severity};
 use crate::solid::Solid;
 use glam::DVec3;
+use rayon::prelude::*;
 
 /// Makes a mold of a part. Errors are of the input; what can not be molded as wanted is a finding of severity error, and
 /// then there are no pieces.
@@ -48,9 +49,32 @@ pub fn extra(mold: &mut Mold, ending: &str, text: impl Fn(&Mold) -> String) {
     mold.extras.push(made);
 }
 
+/// A solid on its way to its file, and the way it leaves.
+pub struct Cast<'a> {
+    pub name: &'a str,
+    pub kind: Kind,
+    pub solid: Solid,
+    pub pull: DVec3,
+}
+
+/// Adds pieces of which one is made each; what takes long is done for all of them at once.
+pub fn push_all(mold: &mut Mold, casts: &[Cast]) {
+    let settled: Vec<_> = casts.par_iter().map(|c| stl::settled(&c.solid)).collect();
+    for (c, settled) in casts.iter().zip(settled) {
+        keep(mold, (c.name, c.kind), (&c.solid, settled), c.pull, 1);
+    }
+}
+
 /// Adds a solid as a file can hold it, or the finding that none can.
 pub fn push(mold: &mut Mold, name: &str, kind: Kind, solid: &Solid, pull: DVec3, copies: usize) {
-    let (mesh, closed) = stl::settled(solid).map_or_else(|| (solid.mesh(), false), |(m, _)| (m, true));
+    keep(mold, (name, kind), (solid, stl::settled(solid)), pull, copies);
+}
+
+/// A solid with what came of settling it: the mesh and the size of detail that it cost, or nothing.
+type Settled<'a> = (&'a Solid, Option<(Mesh, f64)>);
+
+fn keep(mold: &mut Mold, (name, kind): (&str, Kind), (solid, settled): Settled, pull: DVec3, copies: usize) {
+    let (mesh, closed) = settled.map_or_else(|| (solid.mesh(), false), |(m, _)| (m, true));
     if !closed && !kind.is_made() {
         let what = format!("there is no OpenSCAD source: {name} has detail that f32 can not hold apart");
         let found = finding(mold, Severity::Note, vec![], what, "the STL files are whole without it");

@@ -7,6 +7,7 @@ pub mod checks;
 mod cores;
 pub mod figures;
 pub mod fill;
+pub mod fins;
 pub mod frame;
 pub mod layout;
 mod make;

@@ -38,17 +38,23 @@ impl From<NotSolid> for MoldError {
     }
 }
 
-/// The largest part whose self-crossings are looked for, triangles: beyond it the kernel's answer alone is taken.
-const CROSSINGS_UP_TO: usize = 200_000;
-
 /// A part that is a plain solid, and what was mended for it.
 pub struct Checked {
     pub mesh: Mesh,
     pub mended: Option<String>,
 }
 
+/// Triangles of a part that is molded. Its shadows, sweeps and halves are gone through some dozen times: a part of 100,000
+/// is a matter of seconds, and more detail than this is below what a printer of molds makes.
+const MOST_TRIANGLES: usize = 300_000;
+
 /// Refuses what is no plain solid of one body.
 pub fn checked(part: &Mesh) -> Result<Checked, MoldError> {
+    if part.triangles.len() > MOST_TRIANGLES {
+        let what =
+            format!("the part has {} triangles; molds take up to {MOST_TRIANGLES}", part.triangles.len());
+        return Err(unfit(what, "make its mesh coarser: what is below a layer is not seen in a casting"));
+    }
     if part.triangles.is_empty() {
         return Err(unfit("the part has no triangles", "give a closed mesh"));
     }
@@ -93,17 +99,17 @@ const MENDED_SHARE: f64 = 1e-6;
 /// Crossings of the size of round-off (programs that write f32 make them) are mended by uniting short edges; others are
 /// refused.
 fn uncrossed(part: &Mesh, solid: &Solid) -> Result<Checked, MoldError> {
-    let crossings = |m: &Mesh| cross::within(m, &Bvh::new(m));
-    if part.triangles.len() > CROSSINGS_UP_TO {
-        return Ok(Checked { mesh: part.clone(), mended: None });
-    }
-    let Some(first) = crossings(part).first().copied() else {
+    let crossings = |m: &Mesh| {
+        cross::within(m, &Bvh::new(m))
+            .map_err(|e| unfit(e.to_string(), "make its mesh anew with fewer triangles"))
+    };
+    let Some(first) = crossings(part)?.first().copied() else {
         return Ok(Checked { mesh: part.clone(), mended: None });
     };
     for size in stl::details(part) {
         let plain = solid.plain(size).mesh();
         let same = (plain.volume() - part.volume()).abs() <= MENDED_SHARE * part.volume();
-        if same && plain.closure() == Closure::Closed && crossings(&plain).is_empty() {
+        if same && plain.closure() == Closure::Closed && crossings(&plain)?.is_empty() {
             let what = format!(
                 "the part's surface crossed itself at {:.3}; edges below {size:.5} mm were united",
                 first.at

@@ -64,8 +64,11 @@ pub fn halves(
     tools: &Tools,
 ) -> Result<[(&'static str, Solid, DVec3); 2], NotSolid> {
     let block = Solid::of(&cuboid(plan.low, plan.high))?;
-    let lower = below.minus(cavity).with(&tools.keys).minus(&tools.bolts);
-    let cut = Solid::all(vec![tools.sockets.clone(), tools.bolts.clone(), tools.above.clone()]);
-    let upper = block.minus(below).minus(cavity).minus(&cut);
+    let lower = || below.minus(cavity).with(&tools.keys).minus(&tools.bolts);
+    let upper = || {
+        let cut = Solid::all(vec![tools.sockets.clone(), tools.bolts.clone(), tools.above.clone()]);
+        block.minus(below).minus(cavity).minus(&cut)
+    };
+    let (lower, upper) = rayon::join(lower, upper);
     Ok([("lower", lower, DVec3::NEG_Z), ("upper", upper, DVec3::Z)])
 }

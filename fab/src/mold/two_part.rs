@@ -6,7 +6,7 @@ use crate::mesh::Mesh;
 use crate::mold::checks::CAVITY_SHARE;
 use crate::mold::fill;
 use crate::mold::layout::{self, Around};
-use crate::mold::make::{blank, extra, finding, push, source};
+use crate::mold::make::{Cast, blank, extra, finding, push, push_all, source};
 use crate::mold::parting;
 use crate::mold::pictures;
 use crate::mold::prepare::Ready;
@@ -34,9 +34,9 @@ pub fn mold(part: &Mesh, ready: Ready, spec: &MoldSpec) -> Result<Mold, MoldErro
     let cavity = filled.as_ref().unwrap_or(&ready.solid);
     let below = below(&mold, cavity, &ready)?;
     let tools = rigid::Tools::of(&mold.plan, &spec.figures)?;
-    for (name, half, pull) in rigid::halves(cavity, &below, &mold.plan, &tools)? {
-        push(&mut mold, name, Kind::Half, &half, pull, 1);
-    }
+    let halves = rigid::halves(cavity, &below, &mold.plan, &tools)?;
+    let casts = halves.map(|(name, solid, pull)| Cast { name, kind: Kind::Half, solid, pull });
+    push_all(&mut mold, &casts);
     finish(mold, cavity, &tools)
 }
 
@@ -50,14 +50,14 @@ pub fn below(mold: &Mold, cavity: &Solid, ready: &Ready) -> Result<Solid, NotSol
 
 /// The rest of a rigid mold that has its pieces: sources, volumes, steps, pictures.
 pub fn finish(mut mold: Mold, cavity: &Solid, tools: &Tools) -> Result<Mold, MoldError> {
+    let pictures = || rayon::join(|| pictures::maps(&mold), || pictures::opened(&mold));
+    let (file, (maps, opened)) = rayon::join(|| stepped(&mold, cavity), pictures);
     mold.pieces.push(source("part", Kind::Part, &mold.part));
-    if let Some(Parting::Stepped { height_mm, off_mm2 }) = mold.parting {
-        let plane = parting::Plane { height: height_mm, wrong: off_mm2 };
-        let file = parting::below((mold.plan.low, mold.plan.high), cavity, &plane, mold.snap, FAT)?;
+    if let Some(file) = file? {
         push(&mut mold, "below", Kind::Below, &file, DVec3::ZERO, 0);
     }
     mold.findings.extend(draft_finding(&mold));
-    mold.extras.push(pictures::maps(&mold));
+    mold.extras.push(maps);
     let channels = tools.above.minus(cavity).common(&Solid::of(&mold.part_box())?);
     mold.volumes.push(Volume { of: "cavity".into(), mm3: cavity.volume(), grams: None });
     mold.volumes.push(Volume { of: "channels and slots".into(), mm3: channels.volume(), grams: None });
@@ -65,8 +65,15 @@ pub fn finish(mut mold: Mold, cavity: &Solid, tools: &Tools) -> Result<Mold, Mol
     if scad::has_all(&mold) {
         extra(&mut mold, "scad", scad::rigid);
     }
-    mold.extras.push(pictures::opened(&mold));
+    mold.extras.push(opened);
     Ok(mold)
+}
+
+/// Everything below a stepped parting, for a file that is read by itself.
+fn stepped(mold: &Mold, cavity: &Solid) -> Result<Option<Solid>, NotSolid> {
+    let Some(Parting::Stepped { height_mm, off_mm2 }) = mold.parting else { return Ok(None) };
+    let plane = parting::Plane { height: height_mm, wrong: off_mm2 };
+    parting::below((mold.plan.low, mold.plan.high), cavity, &plane, mold.snap, FAT).map(Some)
 }
 
 fn steps(mold: &Mold) -> Vec<Step> {

@@ -4,6 +4,7 @@ use crate::check::Check;
 use crate::files::FileError;
 use crate::mesh::Mesh;
 use crate::mold::figures::Figures;
+use crate::mold::fins::Fin;
 use crate::mold::plan::Plan;
 use crate::mold::tops::Top;
 use crate::report::Finding;
@@ -69,6 +70,11 @@ pub enum Kind {
 }
 
 impl Kind {
+    /// Whether it comes from the printer.
+    pub fn is_printed(self) -> bool {
+        matches!(self, Kind::Half | Kind::Core | Kind::PatternBoard | Kind::BoxWall)
+    }
+
     /// Whether it is a solid to be made, not one that sources refer to.
     pub fn is_made(self) -> bool {
         !matches!(self, Kind::Part | Kind::Below | Kind::Room)
@@ -258,6 +264,8 @@ pub struct WrittenPiece {
     pub watertight: bool,
     pub bodies: usize,
     pub triangles: usize,
+    /// The widest fin of a printed piece that is thinner than the mold's printer makes.
+    pub fin: Option<Fin>,
     pub checks: Vec<Check>,
 }
 

@@ -3,11 +3,13 @@
 //!
 //! A measurement that misses its limit is a finding of severity error; the files stay, so that it can be looked at.
 
+use crate::bvh::Bvh;
 use crate::check::openscad::OpenScad;
 use crate::check::{Check, Outcome};
 use crate::files::{Batch, FileError, stl};
 use crate::mesh::{Closure, Mesh};
 use crate::mold::checks::{self, Halves};
+use crate::mold::fins;
 use crate::mold::make::finding;
 use crate::mold::{Kind, Measured, Mold, MoldError, MoldReport, Piece, Route, WrittenPiece, scad};
 use crate::report::{Finding, Place, Severity};
@@ -59,6 +61,7 @@ fn of_measure(mold: &Mold, m: &Measured) -> Finding {
 }
 
 fn report(mold: &Mold, back: &[Mesh]) -> MoldReport {
+    let least = mold.figures.least_wall.value;
     let piece = |(p, m): (&Piece, &Mesh)| WrittenPiece {
         name: p.name.clone(),
         kind: p.kind,
@@ -69,6 +72,7 @@ fn report(mold: &Mold, back: &[Mesh]) -> MoldReport {
         watertight: m.closure() == Closure::Closed,
         bodies: m.topology().bodies,
         triangles: m.triangles.len(),
+        fin: if p.kind.is_printed() { fins::widest(m, &Bvh::new(m), least) } else { None },
         checks: vec![],
     };
     let pieces: Vec<WrittenPiece> = mold.pieces.iter().zip(back).map(piece).collect();
@@ -79,6 +83,7 @@ fn report(mold: &Mold, back: &[Mesh]) -> MoldReport {
         let what = format!("{} is not closed as written", p.file);
         finding(mold, Severity::Error, vec![], what, "do not use this file; please report it with the part")
     }));
+    findings.extend(pieces.iter().filter_map(|p| of_fin(mold, p)));
     MoldReport {
         name: mold.name.clone(),
         route: mold.route,
@@ -93,6 +98,18 @@ fn report(mold: &Mold, back: &[Mesh]) -> MoldReport {
         steps: mold.steps.clone(),
         findings,
     }
+}
+
+/// A fin of a printed piece; its place is in the part's own frame.
+fn of_fin(mold: &Mold, piece: &WrittenPiece) -> Option<Finding> {
+    let fin = piece.fin?;
+    let what = format!(
+        "{} has a fin of {:.3} mm, thin over {:.1} mm; the printer of the mold makes none thinner than {} mm",
+        piece.file, fin.thin.thickness_mm, fin.width_mm, mold.figures.least_wall.value
+    );
+    let remedy = "widen what forms it in the part (a slot, the room beside a lip), print this piece on a finer \
+                  machine, or set a strip of metal there";
+    Some(finding(mold, Severity::Warning, fin.thin.at.to_vec(), what, remedy))
 }
 
 /// Lets OpenSCAD make each piece from the source in the folder, and adds what it finds to the report.

@@ -11,7 +11,7 @@ use crate::files::Batch;
 use crate::make::{Cavity, FabError, Output, Recipe};
 use crate::mesh::Mesh;
 use crate::mold::figures::Figures;
-use crate::mold::{self, Kind, Mold, MoldError, MoldReport, MoldSpec};
+use crate::mold::{self, Mold, MoldError, MoldReport, MoldSpec};
 use crate::process::Route;
 use crate::report::{Finding, MoldFile, Place, Severity};
 use crate::shape::Job;
@@ -184,8 +184,7 @@ fn scaled(output: &Output, q: usize, at: DVec3) -> DVec3 {
 /// What of a mold comes from the printer.
 fn prints_of(mold: Mold, process: &str) -> Vec<MoldPrint> {
     let name = mold.name;
-    let printed = |k: Kind| matches!(k, Kind::Half | Kind::Core | Kind::PatternBoard | Kind::BoxWall);
-    let made = mold.pieces.into_iter().filter(|p| p.copies > 0 && printed(p.kind));
+    let made = mold.pieces.into_iter().filter(|p| p.copies > 0 && p.kind.is_printed());
     let print = |p: mold::Piece| MoldPrint {
         process: process.to_string(),
         name: format!("{name}.{}", p.name),

@@ -2,19 +2,25 @@
 //!
 //! Space is cut along the planes of the solid's own facets until no facet is left inside a piece; a piece is
 //! then all in or all out. A convex solid is its own one cell. Cost: cells grow with the square of the reflex
-//! faces at worst; beyond [`MOST`] it is given up. Promised: the cells' volumes add up to the solid's
+//! faces at worst; beyond [`MOST`] pieces or [`WORK`] it is given up. Promised: the cells' volumes add up to the solid's
 //! (checked). Not promised: fewest cells.
 
 pub(crate) mod polytope;
+mod reach;
 
 use super::shells::solid_angle;
 use crate::solid::{Cell, Facet, Solid};
 use glam::{DVec2, DVec3};
 use polytope::{Plane, cuboid, halves, height, hull, measure};
+use reach::Reach;
 use std::collections::BTreeMap;
 
 /// More pieces than this, in or out, are not made: the planner pairs the cells of two parts.
 const MOST: usize = 4096;
+
+/// Facets that all pieces may hold together while they are cut, counted anew in each piece: as if each of [`MOST`] held
+/// two thousand. A surface of a million facets may so be cut eight times over before it is known not to fall into few pieces.
+const WORK: usize = 2000 * MOST;
 
 /// So many facets of a piece are tried as its next cut.
 const TRIED: usize = 24;
@@ -24,6 +30,8 @@ const TRIED: usize = 24;
 pub enum NoCells {
     #[error("more than {MOST} pieces would be needed")]
     TooMany,
+    #[error("too many facets for cutting it into {MOST} pieces at most")]
+    TooFine,
     #[error("the pieces' volumes do not add up to the solid's within its resolution")]
     DoNotAddUp,
 }
@@ -47,9 +55,10 @@ pub(super) fn cells(solid: &Solid, width: f64) -> Result<Vec<Cell>, NoCells> {
 
 /// How far a corner of the cell stands off a facet of its own, or outside any plane.
 pub(super) fn off(cell: &Cell) -> f64 {
+    let reach = Reach::of(&cell.vertices);
     let of = |(&plane, facet): (&Plane, &Vec<u32>)| {
         let on = facet.iter().map(|&i| height(plane, cell.vertices[i as usize]).abs()).fold(0.0, f64::max);
-        cell.vertices.iter().map(|&v| height(plane, v)).fold(on, f64::max)
+        reach.above(plane).max(on)
     };
     cell.planes.iter().zip(&cell.facets).map(of).fold(0.0, f64::max)
 }
@@ -73,8 +82,8 @@ fn planes(solid: &Solid) -> Vec<Plane> {
 
 /// The solid as one cell, if every corner lies behind every facet.
 fn whole(solid: &Solid, planes: &[Plane], width: f64) -> Option<Cell> {
-    let behind = |p: &Plane| solid.vertices.iter().all(|&v| height(*p, v) <= width);
-    if !planes.iter().all(behind) {
+    let reach = Reach::of(&solid.vertices);
+    if planes.iter().any(|&p| reach.beyond(p, width)) {
         return None;
     }
     let mut faces: BTreeMap<[u64; 3], (Plane, Vec<u32>)> = BTreeMap::new();
@@ -118,11 +127,14 @@ fn pieces(solid: &Solid, planes: &[Plane], width: f64) -> Result<Vec<Cell>, NoCe
     // Wide enough that no side of the box is a face of the solid.
     let room = DVec3::splat((hi - lo).max_element());
     let mut open: Vec<(Cell, Vec<Scrap>)> = vec![(cuboid(lo - room, hi + room), scraps)];
-    let (mut inside, mut made) = (Vec::new(), 0);
+    let (mut inside, mut made, mut work) = (Vec::new(), 0, 0);
     while let Some((cell, scraps)) = open.pop() {
-        made += 1;
+        (made, work) = (made + 1, work + scraps.len());
         if made > MOST {
             return Err(NoCells::TooMany);
+        }
+        if work > WORK {
+            return Err(NoCells::TooFine);
         }
         if scraps.is_empty() {
             let (volume, surface) = measure(&cell);
