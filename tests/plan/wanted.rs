@@ -1,6 +1,7 @@
 //! What a shop wants of a plan: known small cases, each with the twin that must say the opposite.
 
 use super::build::{assembly, cuboid};
+use super::made::held;
 use super::{Made, planned};
 use glam::DVec3;
 use std::path::Path;
@@ -150,6 +151,43 @@ fn the_order_of_few_parts_is_the_best_of_all() {
     assert_eq!(order(&plan)[0], "lid");
     let counts = [Wish::Air, Wish::Above, Wish::Directions].map(|w| found.judged.count(w));
     assert_eq!(counts, [Some(0), Some(0), Some(1)]);
+}
+
+/// Two halves, each with a tab under the other, stand in a well: they leave it together and come apart outside.
+fn halves_in_a_well(walls: bool) -> Made {
+    let left = vec![
+        cuboid([0., 0., 0.], [1., 3., 2.]),
+        cuboid([1., 0., 0.], [2., 2., 2.]),
+        cuboid([1., 2., 1.], [2., 3., 2.]),
+        cuboid([2., 0., 0.], [3., 1., 1.]),
+    ];
+    let right = vec![
+        cuboid([3., 0., 0.], [4., 3., 2.]),
+        cuboid([2., 1., 0.], [3., 3., 2.]),
+        cuboid([2., 0., 1.], [3., 1., 2.]),
+        cuboid([1., 2., 0.], [2., 3., 1.]),
+    ];
+    let mut well = vec![cuboid([-1., -1., -1.], [5., 4., 0.])];
+    if walls {
+        well.extend([cuboid([-1., -1., 0.], [0., 4., 2.]), cuboid([4., -1., 0.], [5., 4., 2.])]);
+        well.extend([cuboid([0., -1., 0.], [4., 0., 2.]), cuboid([0., 3., 0.], [4., 4., 2.])]);
+    }
+    let cap = vec![cuboid([0., 0., 2.], [4., 3., 3.])];
+    held(assembly(vec![("well", well), ("left", left), ("right", right), ("cap", cap)]), 0)
+}
+
+/// Groups are put in order, too, and come apart as the planner found; without the walls there is no group.
+#[test]
+fn groups_are_reordered_and_come_apart_outside() {
+    let wishes = ask(&[Wish::Above, Wish::Air, Wish::Directions]);
+    for (walls, not_above) in [(true, 1), (false, 2)] {
+        let (plan, found) = preferred(&halves_in_a_well(walls), &wishes);
+        let groups = plan.steps.iter().filter(|s| s.parts.len() > 1).count();
+        assert_eq!((plan.steps.len(), groups == 0), (3, !walls), "{plan:#?}");
+        assert!(found.looked_at > 1, "orders were looked at");
+        assert!(found.judged.count(Wish::Above) <= Some(not_above), "{:?}", found.judged);
+        assert!(plan.steps[0].parts == ["cap"] || walls, "{plan:#?}");
+    }
 }
 
 fn run(words: &[&str]) -> Output {

@@ -1,10 +1,11 @@
 //! Takes a plan and what a shop would rather have of it; gives the plan with its parts in another legal order, and for
 //! each preference whether it is met and what was paid for it.
 //!
-//! Only the order, and the direction among those looked at, of parts that leave singly and straight from their places is
-//! chosen: groups, turns and moves that stop half way stay where the planner put them. Each order is legal by the
-//! planner's own test; `verify` checks it with other code. `best` is best among orders of single parts along the directions
-//! looked at, with the short test of rest (see `orders`); what is told of rest is the long one (see `rest`).
+//! Only the order, and the direction among those looked at, of parts that leave straight from their places is chosen,
+//! singly or in the groups that the planner found: turns and moves that stop half way stay where the planner put them,
+//! and so does the order in which a group comes apart. Each order is legal by the planner's own test; `verify` checks it
+//! with other code. `best` is best among orders of single parts along the directions looked at, with the short test of
+//! rest (see `orders`); what is told of rest is the long one (see `rest`).
 
 mod judge;
 mod orders;
@@ -71,7 +72,7 @@ pub struct Ask {
 pub enum Chosen {
     /// Among all orders of single parts along the directions looked at.
     Best,
-    /// Among some of them: the bound on counted work was reached.
+    /// Among some of them: the bound on counted work was reached, or groups were among them.
     Some,
     /// The planner's own order is as good as any looked at, or nothing can be reordered.
     AsFound,
@@ -131,11 +132,13 @@ fn first(wish: Wish, ranked: &[Wish; 5]) -> [Wish; 5] {
     out
 }
 
-/// Steps of single parts, the height of their table, and all other steps.
+/// Straight steps of which each leaves what the one before left, the height of their table, the steps by which the
+/// groups among them come apart, and all other steps.
 struct Stretch<'r> {
-    steps: &'r [Step],
+    line: Vec<&'r Step>,
     floor: f64,
-    others: &'r [Step],
+    inside: Vec<&'r Step>,
+    others: Vec<&'r Step>,
 }
 
 /// What all orders are weighed with.
@@ -156,13 +159,14 @@ impl<'s, 'a> Shop<'s, 'a> {
         ids.iter().filter_map(|id| self.ids.get(id.as_str()).copied()).collect()
     }
 
-    /// The part that leaves by itself, straight, from a set in which it has not moved.
-    fn single(&self, step: &Step) -> Option<(PartIx, DVec3)> {
-        let shift = step.motion.straight().filter(|_| step.ends == Ends::Apart && step.parts.len() == 1)?;
-        Some((*self.set(&step.parts).first()?, DVec3::from_array(shift.direction)))
+    /// All parts that a step divides.
+    fn divided(&self, step: &Step) -> Set {
+        let mut all = self.set(&step.parts);
+        all.extend(self.set(&step.stays));
+        all
     }
 
-    /// Each run of single parts in a better order, the rest as it was.
+    /// Each run of straight leaves in a better order, the rest as it was.
     fn reordered(&self, steps: &[Step], ranked: &[Wish; 5], counted: bool) -> (Vec<Step>, Looked) {
         let mut looked = Looked { states: 0, all: true };
         // After a motion within a set places are others; moves counted on a lattice keep their order.
@@ -172,14 +176,14 @@ impl<'s, 'a> Shop<'s, 'a> {
         let (directions, floors) = (self.directions(steps), judge::floors(self, steps));
         let (mut out, mut at) = (Vec::new(), 0);
         while at < steps.len() {
-            let end = self.run_from(steps, at);
+            let (end, line, inside) = self.run_from(steps, at);
             if end == at {
                 out.push(steps[at].clone());
                 at += 1;
                 continue;
             }
-            let others: Vec<Step> = out.iter().chain(&steps[end..]).cloned().collect();
-            let run = Stretch { steps: &steps[at..end], floor: floors[at], others: &others };
+            let others = out.iter().chain(&steps[end..]).chain(inside.iter().copied()).collect();
+            let run = Stretch { line, floor: floors[at], inside, others };
             let found = self.better(&run, &directions, ranked, &mut looked);
             out.extend(found.unwrap_or_else(|| steps[at..end].to_vec()));
             at = end;
@@ -187,21 +191,23 @@ impl<'s, 'a> Shop<'s, 'a> {
         (out, looked)
     }
 
-    /// The end of the run of single parts that begins here: each leaves what the one before left.
-    fn run_from(&self, steps: &[Step], at: usize) -> usize {
-        let mut end = at;
-        while end < steps.len() && self.single(&steps[end]).is_some() {
-            let follows = end == at || {
-                let mut own = self.set(&steps[end].stays);
-                own.extend(self.set(&steps[end].parts));
-                own == self.set(&steps[end - 1].stays)
-            };
-            if !follows {
-                break;
+    /// The run of straight leaves that begins here, and the steps between by which its groups come apart.
+    fn run_from<'r>(&self, steps: &'r [Step], at: usize) -> (usize, Vec<&'r Step>, Vec<&'r Step>) {
+        let (mut line, mut inside): (Vec<&Step>, Vec<&Step>) = (Vec::new(), Vec::new());
+        let mut gone = Set::new();
+        for (k, next) in steps.iter().enumerate().skip(at) {
+            let divided = self.divided(next);
+            let follows = line.last().is_none_or(|before| divided == self.set(&before.stays));
+            if follows && next.ends == Ends::Apart && next.motion.straight().is_some() {
+                gone.extend(self.set(&next.parts));
+                line.push(next);
+            } else if !line.is_empty() && divided.is_subset(&gone) {
+                inside.push(next);
+            } else {
+                return (k, line, inside);
             }
-            end += 1;
         }
-        end
+        (steps.len(), line, inside)
     }
 
     /// Those of the plan, up, and the axes: each once.
@@ -225,25 +231,30 @@ impl<'s, 'a> Shop<'s, 'a> {
         ranked: &[Wish; 5],
         looked: &mut Looked,
     ) -> Option<Vec<Step>> {
-        let Stretch { steps, floor, others } = run;
-        let mut set = self.set(&steps.first()?.parts);
-        set.extend(self.set(&steps.first()?.stays));
-        let last = self.set(&steps.last()?.stays);
+        let Stretch { line, floor, inside, others } = run;
+        let set = self.divided(line.first()?);
+        let last = self.set(&line.last()?.stays);
+        let groups = line.iter().map(|s| self.set(&s.parts)).filter(|g| g.len() > 1);
+        let groups: Vec<Set> = groups.collect();
         let used = |d: &DVec3| {
             let straight = others.iter().filter_map(|s| s.motion.straight());
             straight.into_iter().any(|s| DVec3::from_array(s.direction).distance(*d) <= SAME_ANGLE)
         };
         let used = directions.iter().map(used).collect();
-        let run = Run::new(self, (&set, &last), *floor, directions, used)?;
+        let run = Run::new(self, (&set, &last, &groups), *floor, directions, used)?;
         let Choice { moves, looked: more } = run.best(ranked)?;
         looked.states += more.states;
         looked.all &= more.all;
         let mut left = set;
-        let told = moves.into_iter().map(|(p, along)| {
-            left.remove(&p);
-            step(self.field, &Move { parts: Set::from([p]), along, stays: left.clone() })
-        });
-        Some(told.collect())
+        let mut told = Vec::new();
+        for (parts, along) in moves {
+            left.retain(|p| !parts.contains(p));
+            let of_group = inside.iter().filter(|s| parts.len() > 1 && self.divided(s).is_subset(&parts));
+            let of_group: Vec<Step> = of_group.map(|s| (*s).clone()).collect();
+            told.push(step(self.field, &Move { parts, along, stays: left.clone() }));
+            told.extend(of_group);
+        }
+        Some(told)
     }
 }
 

@@ -1,10 +1,11 @@
-//! Takes a set from which parts leave singly and straight, and what is wished of their order; gives the order that a
-//! dynamic program over what is left finds.
+//! Takes a set from which parts, and groups that are named, leave straight, and what is wished of their order; gives the
+//! order that a dynamic program over what is left finds.
 //!
-//! Whether a part leaves along a direction depends on each other part by itself, so all orders along the directions
-//! looked at are known from one table. Costs add up over what is left and the directions used; exact as long as no layer
-//! of states is cut to the width that counted work allows (`Looked::all`). The test of rest here is a short one: that
-//! something is under a part; `rest` does more.
+//! Whether a part or a group leaves along a direction depends on each other part by itself, so all orders along the
+//! directions looked at are known from one table. Costs add up over what is left and the directions used; exact for
+//! single parts as long as no layer of states is cut to the width that counted work allows (`Looked::all`). How a group
+//! comes apart afterwards is not weighed here, so with groups it is not said to be exact. The test of rest is a short
+//! one: that something is under a part; `rest` does more.
 
 use super::super::field::Set;
 use super::{Shop, Table, Wish};
@@ -33,12 +34,12 @@ const WIDEST: usize = 4096;
 
 pub struct Looked {
     pub states: usize,
-    /// No layer was cut.
+    /// No layer was cut, and there were no groups.
     pub all: bool,
 }
 
 pub struct Choice {
-    pub moves: Vec<(PartIx, DVec3)>,
+    pub moves: Vec<(Set, DVec3)>,
     pub looked: Looked,
 }
 
@@ -51,7 +52,9 @@ pub struct Run<'r> {
     leave: usize,
     flexible: Bits,
     used: u32,
-    /// For each direction and part: who stops it.
+    /// What may leave: each part, then the groups.
+    units: Vec<Bits>,
+    /// For each direction and unit: who stops it.
     stops: Vec<Vec<Bits>>,
     /// Who may bear each part; all for one that stands by itself.
     under: Vec<Bits>,
@@ -68,8 +71,9 @@ struct State {
     not_above: u32,
     air: u32,
     flexible: u32,
-    from: usize,
-    part: usize,
+    /// The layer and the number in it of the state before.
+    from: (usize, usize),
+    unit: usize,
     direction: usize,
 }
 
@@ -79,7 +83,7 @@ impl State {
         for (k, wish) in ranked.iter().enumerate() {
             key[k] = match wish {
                 Wish::Flexible => self.flexible,
-                // Each single part is one step, whatever the order.
+                // Each step makes two sets of one, so parts are one more than steps, whatever the order.
                 Wish::Steps => 0,
                 Wish::Air => self.air,
                 Wish::Above => self.not_above,
@@ -95,7 +99,7 @@ impl<'r> Run<'r> {
     /// None where the set is too large.
     pub fn new(
         shop: &Shop,
-        (set, last): (&Set, &Set),
+        (set, last, groups): (&Set, &Set, &[Set]),
         floor: f64,
         directions: &'r [DVec3],
         used: Vec<bool>,
@@ -111,12 +115,15 @@ impl<'r> Run<'r> {
             return None;
         }
         let alone = shop.ask.table == Table::None && !parts.iter().any(held);
+        let singles = (0..parts.len()).map(|k| 1 << k);
+        let units: Vec<Bits> = singles.chain(groups.iter().map(|g| bits(&|p| g.contains(p)))).collect();
         Some(Run {
             keep: if any { 0 } else { bits(&|p| last.contains(p)) },
             leave: parts.len() - last.len(),
             flexible: bits(&|p| shop.ask.flexible.contains(p)),
             used: used.iter().enumerate().filter(|(_, u)| **u).map(|(k, _)| 1 << k).sum(),
-            stops: stops(shop, &parts, directions),
+            stops: stops(shop, &parts, &units, directions),
+            units,
             under: under(shop, &parts, floor),
             lacking: u32::from(alone),
             up: shop.ask.up,
@@ -128,7 +135,7 @@ impl<'r> Run<'r> {
     /// The order that counts least; none where some part leaves along no direction that is allowed.
     pub fn best(&self, ranked: &[Wish; 5]) -> Option<Choice> {
         let all = if self.parts.len() == MOST_PARTS { Bits::MAX } else { (1 << self.parts.len()) - 1 };
-        let each = (self.parts.len().pow(2) * self.directions.len()).max(1);
+        let each = (self.parts.len() * self.units.len() * self.directions.len()).max(1);
         let width = (MOST_LOOKS / each).clamp(1, WIDEST);
         let start = State {
             left: all,
@@ -137,50 +144,58 @@ impl<'r> Run<'r> {
             not_above: 0,
             air: 0,
             flexible: 0,
-            from: 0,
-            part: 0,
+            from: (0, 0),
+            unit: 0,
             direction: 0,
         };
-        let mut layers = vec![vec![start]];
-        let mut looked = Looked { states: 1, all: true };
-        for _ in 0..self.leave {
-            let mut next = self.after(layers.last()?, ranked);
-            if next.is_empty() {
-                return None;
+        // By how many parts have left; a group skips layers.
+        let mut open: Vec<BTreeMap<(Bits, u32), State>> = vec![BTreeMap::new(); self.leave + 1];
+        open[0].insert((start.left, start.used), start);
+        let mut layers: Vec<Vec<State>> = Vec::new();
+        let mut looked = Looked { states: 0, all: self.units.len() == self.parts.len() };
+        for gone in 0..=self.leave {
+            let mut layer: Vec<State> = std::mem::take(&mut open[gone]).into_values().collect();
+            layer.sort_by_key(|s| s.key(ranked));
+            looked.states += layer.len();
+            looked.all &= layer.len() <= width;
+            layer.truncate(width);
+            for (k, state) in layer.iter().enumerate() {
+                self.after(state, (gone, k), ranked, &mut open);
             }
-            looked.states += next.len();
-            looked.all &= next.len() <= width;
-            next.truncate(width);
-            layers.push(next);
+            layers.push(layer);
         }
-        Some(Choice { moves: self.traced(&layers), looked })
+        (!layers.last()?.is_empty()).then(|| Choice { moves: self.traced(&layers), looked })
     }
 
-    /// All that one move makes of these states, the best first, each once.
-    fn after(&self, states: &[State], ranked: &[Wish; 5]) -> Vec<State> {
-        let mut next: BTreeMap<(Bits, u32), State> = BTreeMap::new();
-        for (from, state) in states.iter().enumerate() {
-            for part in (0..self.parts.len()).filter(|k| (state.left & !self.keep) >> k & 1 == 1) {
-                let free = |d: &usize| self.stops[*d][part] & state.left == 0;
-                for direction in (0..self.directions.len()).filter(free) {
-                    let new = self.moved(state, from, part, direction);
-                    let known = next.entry((new.left, new.used)).or_insert(new);
-                    if new.key(ranked) < known.key(ranked) {
-                        *known = new;
-                    }
+    /// Adds all that one move makes of this state to the layers, each once, the better where two are one.
+    fn after(
+        &self,
+        state: &State,
+        from: (usize, usize),
+        ranked: &[Wish; 5],
+        open: &mut [BTreeMap<(Bits, u32), State>],
+    ) {
+        for (unit, &parts) in self.units.iter().enumerate() {
+            let to = from.0 + parts.count_ones() as usize;
+            if parts & !(state.left & !self.keep) != 0 || to > self.leave {
+                continue;
+            }
+            let free = |d: &usize| self.stops[*d][unit] & state.left == 0;
+            for direction in (0..self.directions.len()).filter(free) {
+                let new = self.moved(state, from, unit, direction);
+                let known = open[to].entry((new.left, new.used)).or_insert(new);
+                if new.key(ranked) < known.key(ranked) {
+                    *known = new;
                 }
             }
         }
-        let mut all: Vec<State> = next.into_values().collect();
-        all.sort_by_key(|s| s.key(ranked));
-        all
     }
 
-    fn moved(&self, state: &State, from: usize, part: usize, direction: usize) -> State {
-        let left = state.left & !(1 << part);
+    fn moved(&self, state: &State, from: (usize, usize), unit: usize, direction: usize) -> State {
+        let left = state.left & !self.units[unit];
         let d = self.directions[direction];
         let above = d.dot(self.up) > SAME_ANGLE;
-        let rigid = self.flexible >> part & 1 == 0;
+        let rigid = self.flexible & self.units[unit] == 0;
         State {
             left,
             used: state.used | 1 << direction,
@@ -189,7 +204,7 @@ impl<'r> Run<'r> {
             air: state.air + self.in_air(state.left),
             flexible: state.flexible + if rigid { (self.flexible & left).count_ones() } else { 0 },
             from,
-            part,
+            unit,
             direction,
         }
     }
@@ -199,11 +214,13 @@ impl<'r> Run<'r> {
         ((0..self.parts.len()).filter(lacks).count() as u32).saturating_sub(self.lacking)
     }
 
-    fn traced(&self, layers: &[Vec<State>]) -> Vec<(PartIx, DVec3)> {
-        let (mut moves, mut at) = (Vec::new(), 0);
-        for layer in layers[1..].iter().rev() {
-            let Some(state) = layer.get(at) else { return Vec::new() };
-            moves.push((self.parts[state.part], self.directions[state.direction]));
+    fn traced(&self, layers: &[Vec<State>]) -> Vec<(Set, DVec3)> {
+        let (mut moves, mut at) = (Vec::new(), (self.leave, 0));
+        while at.0 > 0 {
+            let Some(state) = layers[at.0].get(at.1) else { return Vec::new() };
+            let of_unit = |k: &usize| self.units[state.unit] >> k & 1 == 1;
+            let parts = (0..self.parts.len()).filter(of_unit).map(|k| self.parts[k]);
+            moves.push((parts.collect(), self.directions[state.direction]));
             at = state.from;
         }
         moves.reverse();
@@ -211,9 +228,9 @@ impl<'r> Run<'r> {
     }
 }
 
-/// Who stops each part along each direction, as the planner tests it. Who is held is stopped by itself, and so is who
+/// Who stops each unit along each direction, as the planner tests it. Who is held is stopped by itself, and so is who
 /// would go through the table.
-fn stops(shop: &Shop, parts: &[PartIx], directions: &[DVec3]) -> Vec<Vec<Bits>> {
+fn stops(shop: &Shop, parts: &[PartIx], units: &[Bits], directions: &[DVec3]) -> Vec<Vec<Bits>> {
     let field = shop.field;
     let stage = field.watch.stage("who stops whom", "directions", All::Just(directions.len() as u64));
     let along = |&d: &DVec3| {
@@ -231,7 +248,13 @@ fn stops(shop: &Shop, parts: &[PartIx], directions: &[DVec3]) -> Vec<Vec<Bits>> 
             let others = parts.iter().enumerate().filter(|(j, _)| *j != k);
             others.filter(|(_, q)| stopped(p, **q)).map(|(j, _)| 1 << j).sum()
         };
-        let all = parts.iter().enumerate().map(of).collect();
+        let each: Vec<Bits> = parts.iter().enumerate().map(of).collect();
+        let of_unit = |&unit: &Bits| {
+            let own = (0..parts.len()).filter(|k| unit >> k & 1 == 1);
+            // Its own parts go along, unless one of them cannot go at all.
+            own.fold(0, |all, k| all | each[k] & !unit | each[k] & 1 << k)
+        };
+        let all = units.iter().map(of_unit).collect();
         stage.add(1);
         all
     };
