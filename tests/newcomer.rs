@@ -156,3 +156,18 @@ fn a_part_that_touches_itself_is_a_3mf_of_two_facets_to_an_edge() {
         assert!(!mesh.is_pinched(), "an edge of four facets");
     }
 }
+
+/// One part alone is "locked" by the letter; nobody must take that for a lock that was found.
+#[test]
+fn a_lock_for_want_of_anything_to_move_is_told_as_such() {
+    let at = room("alone");
+    std::fs::copy(support::root().join("fixtures/meshes/cube.stl"), at.join("cube.stl")).expect("a mesh");
+    let part = |id: &str| format!("[[part]]\nid = \"{id}\"\nmesh = \"cube.stl\"\n");
+    std::fs::write(at.join("one.toml"), format!("name = \"one\"\n{}", part("a"))).expect("a spec");
+    let out = ran(&["check", "one.toml"], &at);
+    let words = String::from_utf8_lossy(&out.stdout).into_owned();
+    assert_eq!(out.status.code(), Some(0), "{}", said(&out));
+    assert!(words.contains("nothing may move") && !words.contains("Proof"), "{words}");
+    let whole = ran(&["check", "plain.toml"], &at);
+    assert!(String::from_utf8_lossy(&whole.stdout).contains("Proof"), "a true lock keeps its words");
+}

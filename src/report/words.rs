@@ -32,10 +32,13 @@ pub fn verdict(assembly: &Assembly, check: &Check) -> Chapter {
 fn locked(assembly: &Assembly, check: &Check, stress: &Stress) -> Chapter {
     let kept = check.held.len() + usize::from(check.fixed.is_some());
     let unknowns = Freedom::Rigid.unknowns() * assembly.parts.len().saturating_sub(kept);
+    if unknowns == 0 {
+        return nothing_to_move();
+    }
     let sizes = || stress.forces.iter().map(|f| f.size);
     let (least, most) = (sizes().fold(f64::INFINITY, f64::min), sizes().fold(0.0, f64::max));
     let forces = match stress.forces.len() {
-        0 => "none needed: nothing is free to move".into(),
+        0 => "none".into(),
         n => format!("{} contact forces, all pushing, from {least:.3} to {most:.3}", thousands(n)),
     };
     Chapter {
@@ -54,6 +57,16 @@ fn locked(assembly: &Assembly, check: &Check, stress: &Stress) -> Chapter {
             fact("left unbalanced", format!("{} at most (round-off)", scientific(stress.residual))),
             fact("rank's distance from falling", format!("{} (smallest pivot over largest)", scientific(stress.pivot_ratio))),
         ],
+        ..Chapter::default()
+    }
+}
+
+/// True by the letter, and of no worth: it must not be read as a lock that was found.
+fn nothing_to_move() -> Chapter {
+    Chapter {
+        tone: Tone::Plain,
+        headline: "Locked only because nothing may move: every part is kept still.".into(),
+        words: vec!["No contact was asked. Add parts, or hold fewer of them.".into()],
         ..Chapter::default()
     }
 }
@@ -149,7 +162,7 @@ fn outcome<C>(plan: &Plan<C>) -> Chapter {
             )),
         ),
         Outcome::NotFound => {
-            let searched = plan.searched.states > 0;
+            let searched = plan.searched.states + plan.searched.programs > 0;
             let excluded = plan.stuck.iter().all(|s| s.straight_moves == Straight::None);
             let why = if plan.stopped {
                 "Stopped by the user before the search was done."

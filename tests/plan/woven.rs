@@ -5,7 +5,7 @@ use std::path::Path;
 use weavelock::assembly::PartIx;
 use weavelock::contact::{Joined, join};
 use weavelock::locking::{Verdict, check_some};
-use weavelock::sequence::plan_of;
+use weavelock::sequence::{Motions, plan_by, plan_of};
 use weavelock::spec::{Syntax, parse};
 use weavelock::verify::plan::check_of;
 
@@ -138,4 +138,23 @@ fn the_plain_window_is_locked_and_any_three_of_it_come_apart() {
         let p = planned(&joined, &three);
         assert_eq!((p.outcome, p.steps.len()), (Outcome::Assembled, 2), "without {left_out}: {p:#?}");
     }
+}
+
+/// Locked for shifts, not for turns (k = 1, phase 1): with tens of thousands of rows the turns are searched all the same,
+/// and how far the parts got is told.
+#[test]
+fn twill_tiles_that_only_turns_could_open_are_turned_as_far_as_they_go() {
+    let joined = read(
+        "name = 'x'\n[weave]\nabc = [2, 2, 1]\n[profile]\nrise = 0.6\nlift = 1.0\ncover = 1.0\nsamples = 8\n[swatch]\n\
+         wefts = 4\nwarps = 4\ncut = 'tiles'\nphase = 1\n",
+    );
+    let lock = |set: &[PartIx]| {
+        matches!(check_some(&joined.assembly, &joined.patches, set), Verdict::Locked(_)).then_some(())
+    };
+    let all = all(&joined);
+    let p = plan_by(&joined.assembly, &all, &joined.patches, Motions::Any, lock).expect("sane parts");
+    assert_eq!(p.outcome, Outcome::NotFound);
+    assert!(p.searched.programs > 0, "turns were followed: {:?}", p.searched);
+    let turned = p.stuck.iter().flat_map(|s| &s.reached).map(|r| r.turned_degrees).fold(0.0, f64::max);
+    assert!(turned > 0.0, "{:?}", p.stuck);
 }

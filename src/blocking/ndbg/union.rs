@@ -1,7 +1,7 @@
 //! Takes open convex cones of directions; gives the edges of their union: closed arcs of the cones' own great circles,
 //! and single directions, that no cone holds. There, and nowhere else, the union begins or ends.
 //!
-//! A cone holds what lies inside by more than about the resolution (between that and its 1/sqrt 2, see [`Stretch`]), so
+//! A cone holds what lies inside by more than about the resolution (between that and its 1/sqrt 2, see `Stretch`), so
 //! two cones that overlap by less leave an edge between them: parts may slide there. Nothing is divided or sampled: each
 //! side of each cone is laid off against the others, in one dimension. Cost: the cones that show times all cones.
 //!

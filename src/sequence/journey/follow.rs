@@ -6,7 +6,7 @@
 use super::Work;
 use super::bodies::{Bodies, Poses};
 use super::path::{Passes, passes, paths};
-use super::program::{MOST_ROWS, Row, Twist, moved, nearest, rows};
+use super::program::{MOST_ROWS, Row, SOLVED_WHOLE, Twist, moved, nearest, rows};
 use crate::blocking::Touch;
 
 /// Steps of one wish.
@@ -67,6 +67,11 @@ impl Follow<'_> {
         let touch = self.touch.depth();
         let keep = self.distance.0 * self.least_lever();
         let (found, _) = rows(self.bodies, at, 4.0 * step + keep, touch);
+        if found.len() > MOST_ROWS {
+            // Finding them was the work; a shorter step has fewer.
+            work.spent += found.len();
+            return Stepped::TooLong;
+        }
         let scaled: Vec<Twist> =
             wish.iter().map(|t| Twist { shift: t.shift * step, turn: t.turn * step }).collect();
         let room = |gap: f64| if gap < 0.0 { gap } else { (gap - keep).max(0.0) };
@@ -101,11 +106,8 @@ impl Follow<'_> {
         room: impl Fn(f64) -> f64,
         work: &mut Work,
     ) -> Option<Vec<Twist>> {
-        // Counted even where the program is too large to be solved: finding its rows took as long.
-        work.spent += (rows.len() + 12 * at.len()) * 6 * at.len();
-        if rows.len() > MOST_ROWS {
-            return None;
-        }
+        // All rows are looked at in some rounds, the few that may bind are solved for.
+        work.spent += rows.len() + (rows.len().min(SOLVED_WHOLE) + 12 * at.len()) * 6 * at.len();
         work.programs += 1;
         nearest(self.bodies, at, rows, wish, step, room)
     }

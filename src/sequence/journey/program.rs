@@ -2,12 +2,14 @@
 //! further than it may, to first order.
 //!
 //! A quadratic program (interior point, clarabel): least |x - wish|^2 with n . (v_b(p) - v_a(p)) >= -gap for each row and
-//! |x| <= step for each unknown. Not promised: anything beyond first order; the caller moves and looks again.
+//! |x| <= step for each unknown. Of many rows few bind: those that the motion so far breaks are added until it breaks
+//! none, which gives the same motion. Not promised: anything beyond first order; the caller moves and looks again.
 
 use super::bodies::{Bodies, Body, Owner, Poses, between};
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{DefaultSettings, DefaultSolver, IPSolver, NonnegativeConeT, SolverStatus};
 use glam::{DAffine3, DMat3, DVec3};
+use std::collections::BTreeMap;
 
 /// Velocity of a part about its centre: shift, and turn in radians.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -27,8 +29,21 @@ pub struct Row {
     pub gap: f64,
 }
 
-/// Rows of a program before the set counts as too large for this search: about 50 ms for each solve.
-pub const MOST_ROWS: usize = 6000;
+/// Rows of a program before its step counts as too long: each round looks at all of them, some milliseconds.
+pub const MOST_ROWS: usize = 200_000;
+
+/// Programs of so many rows are solved as they are: a few milliseconds each.
+pub const SOLVED_WHOLE: usize = 1500;
+
+/// Rows of one pair of parts added in one round, those that are broken most: three turns and three shifts leave no more
+/// than six of them binding at once, with as many again that take their place.
+const ADDED: usize = 12;
+
+/// Rounds before a program counts as not solved.
+const ROUNDS: usize = 60;
+
+/// Share of the step by which a row may be broken: ten times the solver's own tolerance.
+const BROKEN_SHARE: f64 = 1e-7;
 
 /// The rows of all pairs of parts within `reach` of each other, and the deepest overlap (0: none).
 pub fn rows(bodies: &Bodies, poses: &Poses, reach: f64, touch: f64) -> (Vec<Row>, f64) {
@@ -85,6 +100,64 @@ pub fn nearest(
     wish: &[Twist],
     step: f64,
     room: impl Fn(f64) -> f64,
+) -> Option<Vec<Twist>> {
+    if rows.len() <= SOLVED_WHOLE {
+        return solved(bodies, poses, rows, wish, step, &room);
+    }
+    let movable: Vec<bool> = bodies.fixed.iter().map(|f| !f).collect();
+    let own = |(k, t): (usize, &Twist)| if movable[k] { *t } else { Twist::default() };
+    let mut motion: Vec<Twist> = wish.iter().enumerate().map(own).collect();
+    let mut taken = vec![false; rows.len()];
+    let mut chosen: Vec<Row> = Vec::new();
+    for round in 0..ROUNDS {
+        let found = broken(bodies, poses, rows, &taken, &motion, step, &room);
+        // The wish itself is not yet within the step.
+        if found.is_empty() && round > 0 {
+            return Some(motion);
+        }
+        found.iter().for_each(|&k| taken[k] = true);
+        chosen.extend(found.iter().map(|&k| rows[k]));
+        motion = solved(bodies, poses, &chosen, wish, step, &room)?;
+    }
+    None
+}
+
+/// Of each pair of parts the rows not taken yet that the motion breaks most.
+fn broken(
+    bodies: &Bodies,
+    poses: &Poses,
+    rows: &[Row],
+    taken: &[bool],
+    motion: &[Twist],
+    step: f64,
+    room: &impl Fn(f64) -> f64,
+) -> Vec<usize> {
+    let at: Vec<DVec3> = (0..poses.len()).map(|k| poses[k].transform_point3(bodies.centre[k])).collect();
+    let speed = |k: usize, p: DVec3| motion[k].shift + motion[k].turn.cross(p - at[k]);
+    let mut by_pair: BTreeMap<(usize, usize), Vec<(f64, usize)>> = BTreeMap::new();
+    for (k, r) in rows.iter().enumerate().filter(|(k, _)| !taken[*k]) {
+        let closing = r.normal.dot(speed(r.a, r.point) - speed(r.b, r.point));
+        let over = closing - room(r.gap);
+        if over > BROKEN_SHARE * step {
+            by_pair.entry((r.a, r.b)).or_default().push((over, k));
+        }
+    }
+    let worst = |mut of: Vec<(f64, usize)>| {
+        of.sort_by(|x, y| y.0.total_cmp(&x.0).then(x.1.cmp(&y.1)));
+        of.truncate(ADDED);
+        of
+    };
+    by_pair.into_values().flat_map(worst).map(|(_, k)| k).collect()
+}
+
+/// The program with all of these rows.
+fn solved(
+    bodies: &Bodies,
+    poses: &Poses,
+    rows: &[Row],
+    wish: &[Twist],
+    step: f64,
+    room: &impl Fn(f64) -> f64,
 ) -> Option<Vec<Twist>> {
     let mut column = vec![None; poses.len()];
     let mut count = 0;
