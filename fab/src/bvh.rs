@@ -75,4 +75,20 @@ impl Bvh {
     pub fn leaf(&self, first: usize, count: usize) -> &[u32] {
         &self.order[first..first + count]
     }
+
+    /// One step of a walk over the unordered pairs of this tree's triangles, from (0, 0): the pairs of nodes below go to
+    /// `todo`; two leaves give their triangles, the same twice where a leaf meets itself.
+    pub fn open(&self, (i, j): (usize, usize), todo: &mut Vec<(usize, usize)>) -> Option<(&[u32], &[u32])> {
+        match (self.nodes[i], self.nodes[j]) {
+            (Node::Branch { left, right }, _) if i == j => {
+                todo.extend([(left, left), (left, right), (right, right)]);
+            }
+            (Node::Branch { left, right }, _) => todo.extend([(left, j), (right, j)]),
+            (_, Node::Branch { left, right }) => todo.extend([(i, left), (i, right)]),
+            (Node::Leaf { first, count }, Node::Leaf { first: other, count: many }) => {
+                return Some((self.leaf(first, count), self.leaf(other, many)));
+            }
+        }
+        None
+    }
 }

@@ -57,24 +57,15 @@ pub fn within(mesh: &Mesh, tree: &Bvh) -> Result<Vec<Crossing>, Crowded> {
     Ok(found)
 }
 
-/// One step of a walk over the unordered pairs of a tree's triangles: pairs of nodes yet to look at, or of triangles.
+/// One step of a walk over pairs of triangles whose nodes' boxes meet, each pair once.
 fn below(tree: &Bvh, (i, j): (usize, usize), todo: &mut Vec<(usize, usize)>, mut f: impl FnMut(u32, u32)) {
     if i != j && tree.boxes[i].distance_squared(&tree.boxes[j]) > 0.0 {
         return;
     }
-    match (tree.nodes[i], tree.nodes[j]) {
-        (Node::Branch { left, right }, _) if i == j => {
-            todo.extend([(left, left), (left, right), (right, right)])
-        }
-        (Node::Branch { left, right }, _) => todo.extend([(left, j), (right, j)]),
-        (_, Node::Branch { left, right }) => todo.extend([(i, left), (i, right)]),
-        (Node::Leaf { first, count }, Node::Leaf { first: g, count: m }) => {
-            let (own, other) = (tree.leaf(first, count), tree.leaf(g, m));
-            for (k, &s) in own.iter().enumerate() {
-                let rest = if i == j { &own[k + 1..] } else { other };
-                rest.iter().for_each(|&t| f(s, t));
-            }
-        }
+    let Some((own, other)) = tree.open((i, j), todo) else { return };
+    for (k, &s) in own.iter().enumerate() {
+        let rest = if i == j { &own[k + 1..] } else { other };
+        rest.iter().for_each(|&t| f(s, t));
     }
 }
 

@@ -5,7 +5,7 @@
 //! nearer than the least wall through the material are looked at. Not promised: pins and lips that taper by more than
 //! that; their sharp edge is told instead.
 
-use crate::bvh::{Bvh, Node};
+use crate::bvh::Bvh;
 use crate::mesh::Mesh;
 use crate::near::triangles;
 use glam::DVec3;
@@ -70,21 +70,12 @@ pub(crate) fn opposed(mesh: &Mesh, tree: &Bvh, least: f64, mut found: impl FnMut
         if tree.boxes[i].distance_squared(&tree.boxes[j]) >= limit * limit {
             continue;
         }
-        match (tree.nodes[i], tree.nodes[j]) {
-            (Node::Branch { left, right }, _) if i == j => {
-                todo.extend([(left, left), (left, right), (right, right)])
-            }
-            (Node::Branch { left, right }, _) => todo.extend([(left, j), (right, j)]),
-            (_, Node::Branch { left, right }) => todo.extend([(i, left), (i, right)]),
-            (Node::Leaf { first, count }, Node::Leaf { first: f, count: c }) => {
-                let other = tree.leaf(f, c);
-                let pairs = tree.leaf(first, count).iter().flat_map(|&s| other.iter().map(move |&t| (s, t)));
-                for (s, t) in pairs.filter(|&(s, t)| s != t) {
-                    if normals[s as usize].dot(normals[t as usize]) < opposed {
-                        let thin = across(mesh, (s, t), normals[s as usize], limit);
-                        limit = thin.map_or(limit, |thin| found((s, t), thin));
-                    }
-                }
+        let Some((own, other)) = tree.open((i, j), &mut todo) else { continue };
+        let pairs = own.iter().flat_map(|&s| other.iter().map(move |&t| (s, t)));
+        for (s, t) in pairs.filter(|&(s, t)| s != t) {
+            if normals[s as usize].dot(normals[t as usize]) < opposed {
+                let thin = across(mesh, (s, t), normals[s as usize], limit);
+                limit = thin.map_or(limit, |thin| found((s, t), thin));
             }
         }
     }
