@@ -143,11 +143,13 @@ fn wishes(a: &PreferredAnswer) -> Table {
     }
 }
 
+/// A tenth of a percent is as fine as a hand can tell.
+fn share(of_all: f64) -> String {
+    if of_all < 0.001 { "< 0.1 %".into() } else { format!("{:.1} %", 100.0 * of_all) }
+}
+
 fn hands(a: &PreferredAnswer) -> Table {
-    let rows = a
-        .held_in_air
-        .iter()
-        .map(|h| vec![h.step.to_string(), h.parts.join(", "), format!("{:.1} %", 100.0 * h.share)]);
+    let rows = a.held_in_air.iter().map(|h| vec![h.step.to_string(), h.parts.join(", "), share(h.share)]);
     Table {
         caption:
             "Hold these once the step is done, until more is in place; share of the weight, frictionless"
