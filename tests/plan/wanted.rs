@@ -7,8 +7,8 @@ use glam::DVec3;
 use std::path::Path;
 use std::process::{Command, Output};
 use weavelock::assembly::PartIx;
-use weavelock::sequence::{Motions, Plan, plan_by};
 use weavelock::sequence::wanted::{Ask, Chosen, Preferred, Rest, Table, Wish, prefer};
+use weavelock::sequence::{Motions, Plan, plan_by};
 use weavelock::verify::plan::{Checked, check};
 use weavelock::watch::Watch;
 
