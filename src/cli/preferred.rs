@@ -95,7 +95,15 @@ pub fn applied(placed: &Placed, found: PlanAnswer, asked: &Asked) -> Result<Plan
     let made = with_clearance(asm, patches, found.clearance_mm / asm.mm_per_unit)
         .map_err(|e| argument(e.to_string(), "give a smaller --clearance".into()))?;
     let mut found = found;
+    let before = found.plan.stopped;
     let came = prefer(if air { &made } else { asm }, patches, &mut found.plan, &ask, air, &placed.watch);
+    if found.plan.stopped && !before {
+        found.remarks.push(format!(
+            "stopped by the user while wishes were looked at, after {} sets and directions: the plan stands, its order is \
+             the best until then, and what was not judged is undecided",
+            came.looked_at
+        ));
+    }
     Ok(answer::preferred(asm, found, &ask, &came))
 }
 
