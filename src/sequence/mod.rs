@@ -186,7 +186,9 @@ fn way_out<C>(
     told.steps.push(answer::step(&there, &last));
     for set in [exit.parts, stays] {
         // What has moved within its set has no proof of a lock about the places in the file.
-        solve(&exit.asm, set, &exit.patches, motions, &|_| None, told);
+        let at_home = |p: &PartIx| exit.asm.part(*p).pose == field.asm.part(*p).pose;
+        let lock = |set: &[PartIx]| if set.iter().all(at_home) { locked(set) } else { None };
+        solve(&exit.asm, set, &exit.patches, motions, &lock, told);
     }
 }
 

@@ -8,6 +8,8 @@ use super::bodies::{Bodies, Poses};
 use super::path::{Passes, passes, paths};
 use super::program::{MOST_ROWS, Row, SOLVED_WHOLE, Twist, moved, nearest, rows};
 use crate::blocking::Touch;
+use glam::DVec3;
+use std::collections::BTreeSet;
 
 /// Steps of one wish.
 const MOST_STEPS: usize = 200;
@@ -24,6 +26,10 @@ const STOPPED_SHARE: f64 = 0.02;
 
 /// Pulls out of an overlap before a step is given up: each squares what is left.
 const MOST_PULLS: usize = 4;
+
+/// Overlap that a step may start and end with, as a share of what counts as touching: what a file's digits leave of a
+/// contact. A part between two walls that are both a digit too near could otherwise not move at all. Pulls go to half of it.
+const LEFT_SHARE: f64 = 0.25;
 
 /// How near parts may come where there is room: as a share of the smallest lever.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -74,43 +80,72 @@ impl Follow<'_> {
         }
         let scaled: Vec<Twist> =
             wish.iter().map(|t| Twist { shift: t.shift * step, turn: t.turn * step }).collect();
-        let room = |gap: f64| if gap < 0.0 { gap } else { (gap - keep).max(0.0) };
-        let Some(x) = self.solve(at, &found, &scaled, step, room, work) else { return Stepped::Stopped };
+        let left = LEFT_SHARE * touch;
+        let room = |gap: f64| if gap < 0.0 { (gap + left).min(0.0) } else { (gap - keep).max(0.0) };
+        let Some(x) = self.solve(self.bodies, at, &found, (&scaled, step), room, work) else {
+            return Stepped::Stopped;
+        };
         if self.share(&x, &scaled) < STOPPED_SHARE {
             return Stepped::Stopped;
         }
-        let mut next = moved(self.bodies, at, &x);
-        for _ in 0..MOST_PULLS {
-            let (found, deepest) = rows(self.bodies, &next, touch, touch);
-            if deepest <= touch / 4.0 {
-                break;
-            }
-            let still = vec![Twist::default(); at.len()];
-            let Some(x) = self.solve(&next, &found, &still, step, |gap| gap, work) else {
-                return Stepped::TooLong;
-            };
-            next = moved(self.bodies, &next, &x);
-        }
+        let Some(next) = self.pulled_out(at, moved(self.bodies, at, &x), step, work) else {
+            return Stepped::TooLong;
+        };
         match passes(self.bodies, &paths(at, &next), touch) {
             Passes::Yes => Stepped::To(next),
             Passes::No => Stepped::TooLong,
         }
     }
 
+    /// The state with what a step overlapped opened again: by the parts that it moved, or else by all.
+    fn pulled_out(&self, at: &Poses, next: Poses, step: f64, work: &mut Work) -> Option<Poses> {
+        let next = self.calm(at, next);
+        let movers: BTreeSet<usize> = (0..at.len()).filter(|&k| next[k] != at[k]).collect();
+        let own = self.pull(&self.bodies.moving(&movers), next.clone(), step, work);
+        own.or_else(|| self.pull(self.bodies, next, step, work))
+    }
+
+    fn pull(&self, movers: &Bodies, mut next: Poses, step: f64, work: &mut Work) -> Option<Poses> {
+        let (touch, left) = (self.touch.depth(), LEFT_SHARE * self.touch.depth());
+        let still = vec![Twist::default(); next.len()];
+        for pulls in 0..=MOST_PULLS {
+            let (found, deepest) = rows(self.bodies, &next, touch, touch);
+            if deepest <= left {
+                return Some(next);
+            }
+            if pulls < MOST_PULLS {
+                let x = self.solve(movers, &next, &found, (&still, step), |gap| gap + left / 2.0, work)?;
+                next = moved(movers, &next, &x);
+            }
+        }
+        None
+    }
+
+    /// The same with those parts where they were that moved by less than what may overlap: a plan need not name them.
+    fn calm(&self, at: &Poses, next: Poses) -> Poses {
+        let left = LEFT_SHARE * self.touch.depth();
+        let trembles = |k: usize| {
+            let (c, l) = (self.bodies.centre[k], self.bodies.lever[k]);
+            let far = |p: DVec3| at[k].transform_point3(p).distance(next[k].transform_point3(p));
+            [c, c + DVec3::X * l, c + DVec3::Y * l].into_iter().all(|p| far(p) < left)
+        };
+        (0..at.len()).map(|k| if trembles(k) { at[k] } else { next[k] }).collect()
+    }
+
     fn solve(
         &self,
+        bodies: &Bodies,
         at: &Poses,
         rows: &[Row],
-        wish: &[Twist],
-        step: f64,
+        (wish, step): (&[Twist], f64),
         room: impl Fn(f64) -> f64,
         work: &mut Work,
     ) -> Option<Vec<Twist>> {
         // All rows are looked at in some rounds, the few that may bind are solved for.
-        let movable = self.bodies.movable().count();
+        let movable = bodies.movable().count();
         work.spent += rows.len() + (rows.len().min(SOLVED_WHOLE) + 12 * movable) * 6 * movable;
         work.programs += 1;
-        nearest(self.bodies, at, rows, wish, step, room)
+        nearest(bodies, at, rows, wish, step, room)
     }
 
     /// How much of the wish a motion does.
