@@ -81,8 +81,7 @@ fn locked_713_proof(bencher: Bencher) {
     bencher.bench(|| locked(&joined, black_box(&all)));
 }
 
-/// `[2,2,1]` at phase 1: no straight move and no lock; turns and joint motions are searched until the counted work is spent
-/// or a way is found.
+/// `[2,2,1]` at phase 1: no straight move and no lock; three tiles turn out, the other five are locked.
 #[divan::bench(sample_count = 1, sample_size = 1)]
 fn turning_221_plan(bencher: Bencher) {
     let joined = joined(&spec([2, 2, 1], 4, 1, 1));

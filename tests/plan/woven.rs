@@ -5,7 +5,7 @@ use std::path::Path;
 use weavelock::assembly::PartIx;
 use weavelock::contact::{Joined, join};
 use weavelock::locking::{Verdict, check_some};
-use weavelock::sequence::{Motions, plan_by, plan_of};
+use weavelock::sequence::{Ends, Motions, plan_by, plan_of};
 use weavelock::spec::{Syntax, parse};
 use weavelock::verify::plan::check_of;
 
@@ -140,10 +140,11 @@ fn the_plain_window_is_locked_and_any_three_of_it_come_apart() {
     }
 }
 
-/// Locked for shifts, not for turns (k = 1, phase 1): with tens of thousands of rows the turns are searched all the same,
-/// and how far the parts got is told.
+/// Locked for shifts, not for turns (k = 1, phase 1): with tens of thousands of rows the turns are searched all the same.
+/// Three tiles turn out; what is left has not moved and is locked, so its proof holds.
 #[test]
-fn twill_tiles_that_only_turns_could_open_are_turned_as_far_as_they_go() {
+#[ignore = "half a minute"]
+fn twill_tiles_that_only_turns_can_open_are_turned_as_far_as_they_go() {
     let joined = read(
         "name = 'x'\n[weave]\nabc = [2, 2, 1]\n[profile]\nrise = 0.6\nlift = 1.0\ncover = 1.0\nsamples = 8\n[swatch]\n\
          wefts = 4\nwarps = 4\ncut = 'tiles'\nphase = 1\n",
@@ -154,9 +155,11 @@ fn twill_tiles_that_only_turns_could_open_are_turned_as_far_as_they_go() {
     let all = all(&joined);
     let p = plan_by(&joined.assembly, &all, &joined.patches, Motions::Any, lock).expect("sane parts");
     assert!(p.searched.programs > 0, "turns were followed: {:?}", p.searched);
-    let turned = p.stuck.iter().flat_map(|s| &s.reached).map(|r| r.turned_degrees).fold(0.0, f64::max);
     let turns = p.steps.iter().filter(|s| !matches!(s.motion, Motion::Translation(_))).count();
-    assert!(turned > 0.0 || turns > 0, "{:?}", p.stuck);
+    let apart = p.steps.iter().filter(|s| s.ends == Ends::Apart).count();
+    assert!(turns > 0 && apart == 3, "{p:#?}");
+    assert_eq!(p.outcome, Outcome::NeedsFlexible);
+    assert_eq!(p.stuck.iter().map(|s| (s.parts.len(), s.lock)).collect::<Vec<_>>(), [(5, Some(()))]);
     let checked = check_of(&joined.assembly, &all, &p);
     assert!(matches!(checked, Checked::Valid { .. }), "{checked:?}");
 }
