@@ -43,18 +43,30 @@ pub fn on_grid(mesh: &Mesh) -> Mesh {
 /// detail in mm. Where none up to `COARSEST` does, the first that is closed, though other kernels may refuse it; else
 /// `None`.
 pub fn settled(solid: &Solid) -> Option<(Mesh, f64)> {
-    let whole = solid.mesh();
-    let finest = details(&whole).next().unwrap_or(COARSEST);
-    let as_it_is = std::iter::once_with(|| (mended(on_grid(&whole), finest), finest));
-    let united = details(&whole).map(|size| (mended(on_grid(&solid.plain(size).mesh()), size), size));
     let mut closed = None;
-    for (mesh, size) in as_it_is.chain(united).filter(|(mesh, _)| mesh.closure() == Closure::Closed) {
+    for (mesh, size) in closed_on_grid(solid) {
         if plain(&mesh) && same(solid, &mesh, size) {
             return Some((mesh, size));
         }
         closed.get_or_insert((mesh, size));
     }
     closed
+}
+
+/// The solid as `settled`, or nothing where triangles would cross: what further booleans can rest on.
+pub fn uncrossed(solid: &Solid) -> Option<Solid> {
+    let found = closed_on_grid(solid).find(|(mesh, size)| plain(mesh) && same(solid, mesh, *size));
+    found.and_then(|(mesh, _)| Solid::of(&mesh).ok())
+}
+
+/// Closed meshes of the solid on `GRID` with more and more detail united, and the size of that detail.
+fn closed_on_grid(solid: &Solid) -> impl Iterator<Item = (Mesh, f64)> {
+    let whole = solid.mesh();
+    let finest = details(&whole).next().unwrap_or(COARSEST);
+    let sizes = details(&whole);
+    let as_it_is = std::iter::once_with(move || (mended(on_grid(&whole), finest), finest));
+    let united = sizes.map(|size| (mended(on_grid(&solid.plain(size).mesh()), size), size));
+    as_it_is.chain(united).filter(|(mesh, _)| mesh.closure() == Closure::Closed)
 }
 
 /// Whether uniting detail has left the shape alone: what only one of both has is a skin of that thickness at most.
