@@ -45,7 +45,7 @@ pub fn on_grid(mesh: &Mesh) -> Mesh {
 pub fn settled(solid: &Solid) -> Option<(Mesh, f64)> {
     let mut closed = None;
     for (mesh, size) in closed_on_grid(solid) {
-        if plain(&mesh) && same(solid, &mesh, size) {
+        if is_plain(&mesh) && same(solid, &mesh, size) {
             return Some((mesh, size));
         }
         closed.get_or_insert((mesh, size));
@@ -55,7 +55,7 @@ pub fn settled(solid: &Solid) -> Option<(Mesh, f64)> {
 
 /// The solid as `settled`, or nothing where triangles would cross: what further booleans can rest on.
 pub fn uncrossed(solid: &Solid) -> Option<Solid> {
-    let found = closed_on_grid(solid).find(|(mesh, size)| plain(mesh) && same(solid, mesh, *size));
+    let found = closed_on_grid(solid).find(|(mesh, size)| is_plain(mesh) && same(solid, mesh, *size));
     found.and_then(|(mesh, _)| Solid::of(&mesh).ok())
 }
 
@@ -77,7 +77,7 @@ fn same(solid: &Solid, mesh: &Mesh, size: f64) -> bool {
 
 /// Whether no triangles are known to cross; one without area counts as crossing its neighbours. A crowd that is not
 /// looked through passes.
-fn plain(mesh: &Mesh) -> bool {
+pub fn is_plain(mesh: &Mesh) -> bool {
     !matches!(cross::within(mesh, &Bvh::new(mesh)).as_deref(), Ok([_, ..]))
 }
 

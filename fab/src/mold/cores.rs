@@ -166,8 +166,23 @@ fn rooms(view: &View, left: &Solid, enough: f64) -> Result<Vec<Solid>, NotSolid>
     let air = left.minus(&shade).thick(FINE);
     let bodies = air.bodies().into_iter().map(|b| b.mesh()).filter(|m| m.volume() > enough);
     let shafts: Vec<Solid> = bodies.filter_map(|m| shaft(view, &m)).collect();
-    Ok(shafts.into_iter().map(|s| s.minus(&shade).thick(FINE)).collect())
+    Ok(shafts.into_iter().map(|s| cleared(&s, &shade, view.turn)).collect())
 }
+
+/// A shaft less the shade. Shades that meet in a line pinch what is left there; moved a little they overlap.
+fn cleared(shaft: &Solid, shade: &Solid, turn: DMat3) -> Solid {
+    let plain = shaft.minus(shade).thick(FINE);
+    if stl::uncrossed(&plain).is_some() {
+        return plain;
+    }
+    let moved = |by: DVec3| shade.moved(turn.transpose() * by);
+    let wide = [DVec3::X, DVec3::Y].map(|a| moved(a * ASIDE).with(&moved(a * -ASIDE)));
+    let [x, y] = wide.map(|w| shaft.minus(&shade.with(&w)).thick(FINE));
+    [x, y].into_iter().find(|s| stl::uncrossed(s).is_some()).unwrap_or(plain)
+}
+
+/// By how much, mm: eighty steps of the grid of molds, a hundredth of the finest layer.
+const ASIDE: f64 = 80.0 * stl::GRID;
 
 /// From below a body of air out of the block: the hull of its outline, set off by `SEAT` and widened by draft.
 fn shaft(view: &View, air: &Mesh) -> Option<Solid> {
@@ -177,9 +192,9 @@ fn shaft(view: &View, air: &Mesh) -> Option<Solid> {
     let foot = points.iter().map(|p| p.z).fold(f64::INFINITY, f64::min) - BEYOND;
     let outline = hull(points.into_iter().map(flat).collect());
     let wide = |level: f64| SEAT + (level - foot) * view.tan;
-    let around = |level: f64| outline.iter().flat_map(move |&p| circle(p, wide(level)).map(move |q| q.extend(level)));
-    let ends: Vec<DVec3> =
-        around(foot).chain(around(view.lid)).map(|p| view.turn.transpose() * p).collect();
+    let around =
+        |level: f64| outline.iter().flat_map(move |&p| circle(p, wide(level)).map(move |q| q.extend(level)));
+    let ends: Vec<DVec3> = around(foot).chain(around(view.lid)).map(|p| view.turn.transpose() * p).collect();
     let hull = Solid::hull(&ends);
     (!hull.is_empty()).then_some(hull)
 }

@@ -62,7 +62,12 @@ impl<'a> Seen<'a> {
         self.curtains(facets, to, |p| p + back * into((self.mesh, &self.tree), p, back))
     }
 
-    fn curtains(&self, facets: &[u32], to: To, begin: impl Fn(DVec3) -> DVec3) -> Result<Vec<Solid>, NotSolid> {
+    fn curtains(
+        &self,
+        facets: &[u32],
+        to: To,
+        begin: impl Fn(DVec3) -> DVec3,
+    ) -> Result<Vec<Solid>, NotSolid> {
         let patches = patches(&self.turned, &self.mesh.triangles, facets);
         patches.iter().map(|p| Solid::of(&self.hung(p, to, &begin))).collect()
     }
@@ -137,7 +142,8 @@ fn sheet(triangles: Vec<[u32; 3]>) -> (Vec<[u32; 3]>, Vec<u32>) {
             corners.len() as u32 - 1
         })
     };
-    let rings = triangles.iter().enumerate().map(|(t, tri)| [0, 1, 2].map(|k| of(3 * t + k, tri[k]))).collect();
+    let rings =
+        triangles.iter().enumerate().map(|(t, tri)| [0, 1, 2].map(|k| of(3 * t + k, tri[k]))).collect();
     (rings, corners)
 }
 
@@ -185,7 +191,10 @@ fn neighbours(triangles: &[[u32; 3]], facets: &[u32]) -> Vec<Vec<u32>> {
     for (k, f) in facets.iter().enumerate() {
         side.extend(edges(&of(f)).map(|e| (e, k as u32)));
     }
-    facets.iter().map(|f| edges(&of(f)).iter().filter_map(|(a, b)| side.get(&(*b, *a)).copied()).collect()).collect()
+    facets
+        .iter()
+        .map(|f| edges(&of(f)).iter().filter_map(|(a, b)| side.get(&(*b, *a)).copied()).collect())
+        .collect()
 }
 
 /// For each facet those that it shares area with in projection, beyond round-off.
@@ -250,7 +259,8 @@ mod tests {
         let down = seen.looking(Look::Down, |_| true);
         let hung = Solid::all(seen.from_facets(&down, To::Along(5.0)).unwrap());
         // What is below the lid: the projected area 5/3 times the mean way from the lower faces.
-        let faces: f64 = [d.x, d.y, d.z].iter().map(|c| c * (5.0 - (1.0 - c / 1.0 + d.element_sum() - 1.0) / 2.0)).sum();
+        let faces: f64 =
+            [d.x, d.y, d.z].iter().map(|c| c * (5.0 - (1.0 - c / 1.0 + d.element_sum() - 1.0) / 2.0)).sum();
         assert!((hung.volume() - faces).abs() < 1e-9, "{} {faces}", hung.volume());
     }
 
@@ -259,7 +269,8 @@ mod tests {
     fn what_winds_above_itself_comes_in_more_bodies() {
         let at = |k: i32, r: f64| (DVec2::from_angle(f64::from(k) * 0.5) * r).extend(f64::from(k) * 0.4);
         let vertices = (0..20).flat_map(|k| [at(k, 1.0), at(k, 3.0)]).collect();
-        let triangles = (0..19u32).flat_map(|k| [[2 * k, 2 * k + 1, 2 * k + 3], [2 * k, 2 * k + 3, 2 * k + 2]]);
+        let triangles =
+            (0..19u32).flat_map(|k| [[2 * k, 2 * k + 1, 2 * k + 3], [2 * k, 2 * k + 3, 2 * k + 2]]);
         let ramp = Mesh { vertices, triangles: triangles.collect() };
         let seen = Seen::along(&ramp, DVec3::Z, 1e-9);
         let hung = seen.from_facets(&seen.looking(Look::Up, |_| true), To::Against(-1.0)).unwrap();
@@ -268,7 +279,8 @@ mod tests {
 
     #[test]
     fn a_ring_hangs_around_its_hole() {
-        let ring = solid(&frustum(DVec3::ZERO, 2.0, 3.0, 3.0)).minus(&solid(&frustum(-DVec3::Z, 4.0, 1.0, 1.0)));
+        let ring =
+            solid(&frustum(DVec3::ZERO, 2.0, 3.0, 3.0)).minus(&solid(&frustum(-DVec3::Z, 4.0, 1.0, 1.0)));
         let mesh = ring.mesh();
         let seen = Seen::along(&mesh, DVec3::Z, 1e-9);
         let hung = seen.from_inside(&seen.looking(Look::Up, |_| true), To::Along(4.0)).unwrap();

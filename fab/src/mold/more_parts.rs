@@ -114,7 +114,8 @@ fn proven(mold: Mold) -> Result<Mold, String> {
     let own: Vec<(Mesh, DVec3)> = own.map(|p| (stl::snapped(&p.mesh), p.pull)).collect();
     let cores = own.iter().map(|(m, d)| (m, *d)).collect();
     let all = checks::rigid(&mold, &Halves { lower: &lower, upper: &upper, cores }).map_err(|e| e.0)?;
-    let wrong: Vec<String> = all.iter().filter(|m| !m.kept).map(|m| format!("{} is {:.4} {}", m.of, m.value, m.unit)).collect();
+    let wrong: Vec<String> =
+        all.iter().filter(|m| !m.kept).map(|m| format!("{} is {:.4} {}", m.of, m.value, m.unit)).collect();
     if wrong.is_empty() { Ok(mold) } else { Err(wrong.join(", ")) }
 }
 
