@@ -23,6 +23,17 @@ pub fn snapped(mesh: &Mesh) -> Mesh {
     united(mesh.vertices.iter().map(snap).collect(), mesh.triangles.iter().copied())
 }
 
+/// The mesh as STL can hold it, and closed where the mesh is: where rounding opens it, detail that f32 can not hold apart
+/// is united first.
+pub fn snapped_closed(mesh: &Mesh) -> Mesh {
+    let plain = snapped(mesh);
+    if plain.closure() == Closure::Closed || mesh.closure() != Closure::Closed {
+        return plain;
+    }
+    let united = Solid::of(mesh).ok().and_then(|s| settled(&s));
+    united.map_or(plain, |(m, _)| m)
+}
+
 /// Step of the grid on which solids of molds stand, mm: four steps of the grid (2^-20 mm) on which OpenSCAD puts every
 /// corner that it reads, uniting those in neighbouring places. Corners on this one it leaves as they are, so that what was
 /// checked here is what it works with. 4 nm; f32 holds it up to 64 mm, and beyond has a coarser grid of its own within it.

@@ -84,28 +84,32 @@ pub fn cores(
         let view = View { ready, d, turn: upright(d), lid: reach(d, block) + GRIP, tan };
         let room = Solid::all(rooms(&view, &left, enough)?);
         let room = cores.iter().fold(room, |c, earlier| c.minus(&earlier.room));
+        let found = apart(&room, &view, enough);
         let before = left.volume();
-        left = left.minus(&room).thick(FINE);
+        left = found.iter().fold(left, |l, core| l.minus(&core.room)).thick(FINE);
         if before - left.volume() <= enough {
             break;
         }
-        cores.extend(apart(&room, ready, d, enough));
+        cores.extend(found);
     }
     let left_mm3 = left.volume().max(0.0);
     Ok((left_mm3 <= enough && !cores.is_empty()).then_some(Cored { filled, cores, left_mm3 }))
 }
 
-/// A room's cores, each in one body.
-fn apart(room: &Solid, ready: &Ready, d: DVec3, enough: f64) -> Vec<Core> {
+/// A room's cores, each in one body that can be gripped outside; what an earlier core leaves behind it stands loose, and is
+/// left to another direction.
+fn apart(room: &Solid, view: &View, enough: f64) -> Vec<Core> {
     let matter = |b: &Solid| b.mesh().volume() > enough;
+    let held = |b: &Solid| b.mesh().vertices.iter().any(|v| v.dot(view.d) > view.lid - GRIP / 2.0);
     let mut all = Vec::new();
-    for room in room.bodies().into_iter().filter(matter) {
+    for room in room.bodies().into_iter().filter(|b| matter(b) && held(b)) {
         let room = stl::uncrossed(&room).unwrap_or(room);
-        let mut solids: Vec<Solid> =
-            room.minus(&ready.solid).thick(FINE).bodies().into_iter().filter(matter).collect();
+        let whole = room.minus(&view.ready.solid).thick(FINE);
+        let mut solids: Vec<Solid> = whole.bodies().into_iter().filter(|b| matter(b) && held(b)).collect();
+        let core = |solid: Solid, room: Solid| Core { solid, room, pull: view.d };
         match solids.len() {
-            1 => all.extend(solids.pop().map(|solid| Core { solid, room, pull: d })),
-            _ => all.extend(solids.into_iter().map(|solid| Core { room: solid.clone(), solid, pull: d })),
+            1 => all.extend(solids.pop().map(|solid| core(solid, room))),
+            _ => all.extend(solids.into_iter().map(|solid| core(solid.clone(), solid))),
         }
     }
     all
