@@ -55,7 +55,7 @@ pub fn filled(ready: &Ready) -> Result<Solid, NotSolid> {
     let mesh = &ready.framed.mesh;
     let (lo, hi) = mesh.bounds();
     let seen = Seen::along(mesh, DVec3::Z, ready.framed.snap);
-    let all = |way: Look, to: To| seen.from_facets(&seen.looking(way, |_| true), to).map(Solid::all);
+    let all = |way: Look, to: To| seen.hung_on(&seen.looking(way, |_| true), to).map(Solid::all);
     let up = all(Look::Down, To::Along(hi.z + BEYOND))?;
     let down = all(Look::Up, To::Against(lo.z - BEYOND))?;
     Ok(up.common(&down))
@@ -166,7 +166,7 @@ fn rooms(view: &View, left: &Solid, enough: f64) -> Result<Vec<Solid>, NotSolid>
     let seen = Seen::along(part, d, view.ready.framed.snap);
     let low = left.mesh().vertices.iter().map(|v| v.dot(d)).fold(f64::MAX, f64::min) - 2.0 * BEYOND;
     let above = |t: usize| part.corners(t).iter().any(|c| c.dot(d) > low);
-    let shade = Solid::all(seen.from_inside(&seen.looking(Look::Down, above), To::Against(low - BEYOND))?);
+    let shade = Solid::all(seen.rooted(&seen.looking(Look::Down, above), To::Against(low - BEYOND))?);
     let air = left.minus(&shade).thick(FINE);
     let bodies = air.bodies().into_iter().map(|b| b.mesh()).filter(|m| m.volume() > enough);
     let shafts: Vec<Solid> = bodies.filter_map(|m| shaft(view, &m)).collect();

@@ -49,12 +49,12 @@ impl<'a> Seen<'a> {
     }
 
     /// Curtains begin on their facets.
-    pub fn from_facets(&self, facets: &[u32], to: To) -> Result<Vec<Solid>, NotSolid> {
+    pub fn hung_on(&self, facets: &[u32], to: To) -> Result<Vec<Solid>, NotSolid> {
         self.curtains(facets, to, |p| p)
     }
 
     /// Curtains begin a little inside the matter behind their facets, so that they meet it in volume.
-    pub fn from_inside(&self, facets: &[u32], to: To) -> Result<Vec<Solid>, NotSolid> {
+    pub fn rooted(&self, facets: &[u32], to: To) -> Result<Vec<Solid>, NotSolid> {
         let back = match to {
             To::Along(_) => -self.along,
             To::Against(_) => self.along,
@@ -246,7 +246,7 @@ mod tests {
         let table = low.with(&solid(&cuboid(DVec3::new(1.0, 1.0, 0.5), DVec3::new(2.0, 2.0, 3.0)))).mesh();
         let seen = Seen::along(&table, DVec3::Z, 1e-9);
         let up = seen.looking(Look::Up, |_| true);
-        let hung = seen.from_facets(&up, To::Against(-1.0)).unwrap();
+        let hung = seen.hung_on(&up, To::Against(-1.0)).unwrap();
         assert_eq!(hung.len(), 2);
         assert!((Solid::all(hung).volume() - 34.0).abs() < 1e-9, "16 x 2 and 1 x 2 on it");
     }
@@ -257,7 +257,7 @@ mod tests {
         let d = DVec3::new(1.0, 2.0, 2.0) / 3.0;
         let seen = Seen::along(&part, d, 1e-9);
         let down = seen.looking(Look::Down, |_| true);
-        let hung = Solid::all(seen.from_facets(&down, To::Along(5.0)).unwrap());
+        let hung = Solid::all(seen.hung_on(&down, To::Along(5.0)).unwrap());
         // What is below the lid: the projected area 5/3 times the mean way from the lower faces.
         let faces: f64 =
             [d.x, d.y, d.z].iter().map(|c| c * (5.0 - (1.0 - c / 1.0 + d.element_sum() - 1.0) / 2.0)).sum();
@@ -273,7 +273,7 @@ mod tests {
             (0..19u32).flat_map(|k| [[2 * k, 2 * k + 1, 2 * k + 3], [2 * k, 2 * k + 3, 2 * k + 2]]);
         let ramp = Mesh { vertices, triangles: triangles.collect() };
         let seen = Seen::along(&ramp, DVec3::Z, 1e-9);
-        let hung = seen.from_facets(&seen.looking(Look::Up, |_| true), To::Against(-1.0)).unwrap();
+        let hung = seen.hung_on(&seen.looking(Look::Up, |_| true), To::Against(-1.0)).unwrap();
         assert_eq!(hung.len(), 2);
     }
 
@@ -283,7 +283,7 @@ mod tests {
             solid(&frustum(DVec3::ZERO, 2.0, 3.0, 3.0)).minus(&solid(&frustum(-DVec3::Z, 4.0, 1.0, 1.0)));
         let mesh = ring.mesh();
         let seen = Seen::along(&mesh, DVec3::Z, 1e-9);
-        let hung = seen.from_inside(&seen.looking(Look::Up, |_| true), To::Along(4.0)).unwrap();
+        let hung = seen.rooted(&seen.looking(Look::Up, |_| true), To::Along(4.0)).unwrap();
         assert_eq!(hung.len(), 1);
         let whole = Solid::all(hung).with(&ring);
         assert!((whole.volume() - 2.0 * ring.volume()).abs() < 1e-9, "{}", whole.volume());

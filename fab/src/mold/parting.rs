@@ -120,7 +120,7 @@ fn wrong_side(cut: &Mesh, way: Look, height: f64, snap: f64, fat: f64) -> Result
         let fat = |t: &u32| fattened(&column((cut, &tree), cut.corners(*t as usize), height), fat);
         return Ok(wrong.iter().map(fat).collect());
     }
-    seen.from_inside(&wrong, if way == Look::Down { To::Against(height) } else { To::Along(height) })
+    seen.rooted(&wrong, if way == Look::Down { To::Against(height) } else { To::Along(height) })
 }
 
 fn fattened(column: &Mesh, fat: f64) -> Solid {
