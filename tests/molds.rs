@@ -1,5 +1,7 @@
 //! Promises of molds: pull, parting, halves that leave, high points with vents, prints for silicone, trees, refusals.
 
+#[path = "molds/piped.rs"]
+mod piped;
 #[path = "molds/second_kernel.rs"]
 mod second_kernel;
 #[path = "molds/whole.rs"]

@@ -206,7 +206,7 @@ fn of_hollows(part: &PartReport) -> Option<Finding> {
     })
 }
 
-/// Walls and edges thinner than the process makes.
+/// Walls and edges thinner than the process makes, and slots narrower.
 fn of_walls(part: &PartReport) -> Vec<Finding> {
     let finding = |severity, at, what, remedy: &str| Finding {
         severity,
@@ -235,5 +235,16 @@ fn of_walls(part: &PartReport) -> Vec<Finding> {
         );
         finding(Severity::Note, vec![s.at], what, "nothing, where a blunt edge does no harm; else a larger pitch or a process with a finer wall")
     });
-    thin.into_iter().chain(sharp).collect()
+    let slot = part.slot.map(|s| {
+        let what = format!(
+            "a slot is {:.3} mm wide over {:.1} mm; faces printed by {} stay apart from {} mm on, so it may close",
+            s.thin.thickness_mm,
+            s.width_mm,
+            part.process,
+            2.0 * part.clearance_mm
+        );
+        let remedy = "widen the slot, or cut it open with a blade after printing; a finer process has a smaller fit";
+        finding(Severity::Warning, s.thin.at.to_vec(), what, remedy)
+    });
+    thin.into_iter().chain(sharp).chain(slot).collect()
 }

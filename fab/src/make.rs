@@ -13,6 +13,7 @@ use crate::findings;
 use crate::gap::{self, Gap, Made, Promise, Verdict};
 use crate::ledger::Scale;
 use crate::mesh::Mesh;
+use crate::mold::fins::{self, Fin};
 use crate::offset::{self, Aim, Offset};
 use crate::package::laying::{Laying, lay};
 use crate::pinch;
@@ -401,8 +402,19 @@ fn part_report(job: &Job, pieces: &[Piece], p: usize, recipe: &Recipe, folder: &
         longest_move_mm: piece.offset.longest_move,
         wall: piece.made.as_ref().map(|m| wall::measure(&m.mesh, &m.tree, process.least_wall.value)),
         least_wall_mm: process.least_wall.value,
+        slot: piece.made.as_ref().and_then(|m| slot(m, process)),
         checks: vec![],
     }
+}
+
+/// The widest slot of a printed shape that is narrower than two faces need to stay apart: a fin of air.
+fn slot(made: &Made, process: &Process) -> Option<Fin> {
+    let fit = 2.0 * process.clearance.value;
+    let turned = Mesh {
+        triangles: made.mesh.triangles.iter().map(|t| [t[0], t[2], t[1]]).collect(),
+        vertices: made.mesh.vertices.clone(),
+    };
+    if process.route.prints_the_shape() { fins::widest(&turned, &made.tree, fit) } else { None }
 }
 
 fn contact_area(job: &Job, p: usize) -> f64 {

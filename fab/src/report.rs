@@ -5,6 +5,7 @@ use crate::gap::Gap;
 use crate::ledger::Entry;
 use crate::mesh::{Closure, Mesh};
 use crate::mold::Kind;
+use crate::mold::fins::Fin;
 use crate::process::{Figure, Process};
 use crate::wall::Walls;
 use glam::DVec3;
@@ -107,6 +108,8 @@ pub struct PartReport {
     /// Where it is thinner than its process makes, finished size; `None` where there is no file.
     pub wall: Option<Walls>,
     pub least_wall_mm: f64,
+    /// The widest slot of a printed shape that is narrower than the process's fit between two faces, finished size.
+    pub slot: Option<Fin>,
     pub checks: Vec<Check>,
 }
 

@@ -70,6 +70,18 @@ fn a_thin_wall_and_a_sharp_edge_are_told_with_their_place() {
     );
 }
 
+/// Printed faces stay apart by the fit of the process, 0.4 mm: a slot of 0.3 mm may close, one of 0.5 mm stays.
+#[test]
+fn a_slot_that_may_close_in_print_is_told_with_its_place() {
+    let report = made(&solids::slotted(0.3), &recipe(0.2));
+    let slot = report.parts[0].slot.unwrap();
+    assert!((slot.thin.thickness_mm - 0.3).abs() < 1e-4 && (slot.width_mm - 10.0).abs() < 0.1, "{slot:?}");
+    let told: Vec<_> = report.findings.iter().filter(|f| f.what.contains("a slot is 0.300 mm")).collect();
+    assert_eq!((told.len(), told[0].severity, told[0].place.at.len()), (1, Severity::Warning, 2));
+    assert!(told[0].place.at.iter().all(|p| (p.x - 15.0).abs() < 0.151 && p.z > 9.999), "{told:?}");
+    assert_eq!(made(&solids::slotted(0.5), &recipe(0.2)).parts[0].slot, None);
+}
+
 #[test]
 fn the_print_face_is_flattened_and_chamfered_on_demand() {
     let own = Overrides {

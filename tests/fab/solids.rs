@@ -236,6 +236,16 @@ pub fn thin_plate() -> Job {
     complex.job("thin-plate")
 }
 
+/// A block of 30 x 20 x 20 mm with a slot of `wide` mm in it, 10 mm deep.
+pub fn slotted(wide: f64) -> Job {
+    let mut complex = Complex::voxels([3, 1, 2], 10.0, |x, _, z| (x != 1 || z == 0).then_some(0));
+    let xs = [0.0, 15.0 - wide / 2.0, 15.0 + wide / 2.0, 30.0];
+    for v in &mut complex.vertices {
+        *v = DVec3::new(xs[(v.x / 10.0).round() as usize], v.y * 2.0, v.z);
+    }
+    complex.job("slotted")
+}
+
 /// The same two-box job with one shape in two poses, turned half a turn about x.
 pub fn two_boxes_of_one_shape() -> Job {
     let mut job = two_boxes();

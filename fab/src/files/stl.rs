@@ -23,6 +23,17 @@ pub fn snapped(mesh: &Mesh) -> Mesh {
     united(mesh.vertices.iter().map(snap).collect(), mesh.triangles.iter().copied())
 }
 
+/// The mesh as STL can hold it, and closed where the mesh is: where rounding opens it, detail that f32 can not hold apart
+/// is united first.
+pub fn snapped_closed(mesh: &Mesh) -> Mesh {
+    let plain = snapped(mesh);
+    if plain.closure() == Closure::Closed || mesh.closure() != Closure::Closed {
+        return plain;
+    }
+    let united = Solid::of(mesh).ok().and_then(|s| settled(&s));
+    united.map_or(plain, |(m, _)| m)
+}
+
 /// Step of the grid on which solids of molds stand, mm: four steps of the grid (2^-20 mm) on which OpenSCAD puts every
 /// corner that it reads, uniting those in neighbouring places. Corners on this one it leaves as they are, so that what was
 /// checked here is what it works with. 4 nm; f32 holds it up to 64 mm, and beyond has a coarser grid of its own within it.
@@ -43,18 +54,30 @@ pub fn on_grid(mesh: &Mesh) -> Mesh {
 /// detail in mm. Where none up to `COARSEST` does, the first that is closed, though other kernels may refuse it; else
 /// `None`.
 pub fn settled(solid: &Solid) -> Option<(Mesh, f64)> {
-    let whole = solid.mesh();
-    let finest = details(&whole).next().unwrap_or(COARSEST);
-    let as_it_is = std::iter::once_with(|| (mended(on_grid(&whole), finest), finest));
-    let united = details(&whole).map(|size| (mended(on_grid(&solid.plain(size).mesh()), size), size));
     let mut closed = None;
-    for (mesh, size) in as_it_is.chain(united).filter(|(mesh, _)| mesh.closure() == Closure::Closed) {
-        if plain(&mesh) && same(solid, &mesh, size) {
+    for (mesh, size) in closed_on_grid(solid) {
+        if is_plain(&mesh) && same(solid, &mesh, size) {
             return Some((mesh, size));
         }
         closed.get_or_insert((mesh, size));
     }
     closed
+}
+
+/// The solid as `settled`, or nothing where triangles would cross: what further booleans can rest on.
+pub fn uncrossed(solid: &Solid) -> Option<Solid> {
+    let found = closed_on_grid(solid).find(|(mesh, size)| is_plain(mesh) && same(solid, mesh, *size));
+    found.and_then(|(mesh, _)| Solid::of(&mesh).ok())
+}
+
+/// Closed meshes of the solid on `GRID` with more and more detail united, and the size of that detail.
+fn closed_on_grid(solid: &Solid) -> impl Iterator<Item = (Mesh, f64)> {
+    let whole = solid.mesh();
+    let finest = details(&whole).next().unwrap_or(COARSEST);
+    let sizes = details(&whole);
+    let as_it_is = std::iter::once_with(move || (mended(on_grid(&whole), finest), finest));
+    let united = sizes.map(|size| (mended(on_grid(&solid.plain(size).mesh()), size), size));
+    as_it_is.chain(united).filter(|(mesh, _)| mesh.closure() == Closure::Closed)
 }
 
 /// Whether uniting detail has left the shape alone: what only one of both has is a skin of that thickness at most.
@@ -65,7 +88,7 @@ fn same(solid: &Solid, mesh: &Mesh, size: f64) -> bool {
 
 /// Whether no triangles are known to cross; one without area counts as crossing its neighbours. A crowd that is not
 /// looked through passes.
-fn plain(mesh: &Mesh) -> bool {
+pub fn is_plain(mesh: &Mesh) -> bool {
     !matches!(cross::within(mesh, &Bvh::new(mesh)).as_deref(), Ok([_, ..]))
 }
 

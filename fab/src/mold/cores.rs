@@ -1,23 +1,27 @@
 //! Takes a part that no one pull frees, in its mold frame, and its block; gives the side cores that form what the two
 //! halves can not reach, in the order in which they leave, and the part with those places filled, which the halves form.
 //!
-//! A core leaves freely by construction: it is the undercut air that is seen from one direction, swept out along it and
-//! widened by draft, less whatever the part shadows; that set is closed under moving outward. Directions are chosen
-//! greedily among those of the pull search by sampled points, so the number of cores is not promised to be least.
+//! A core leaves freely by construction: it is a shaft around the undercut air that is seen from one direction, widened
+//! outward by draft, less the part and whatever lies in the part's shadow; that set is closed under moving outward.
+//! Directions are chosen greedily among those of the pull search by sampled points, so the number of cores is not promised
+//! to be least.
 
 use crate::bvh::Bvh;
+use crate::files::stl;
 use crate::mesh::{Mesh, area};
-use crate::mold::frame::upright;
-use crate::mold::sweep::{self, Footprint, Way};
+use crate::mold::curtain::{Seen, To};
+use crate::mold::frame::{hull, upright};
+use crate::mold::parting::Look;
+use crate::mold::shadow::flat;
 use crate::mold::{prepare::Ready, pull, ray};
 use crate::solid::{NotSolid, Solid};
-use glam::{DMat3, DVec3};
+use glam::{DMat3, DVec2, DVec3};
 use rayon::prelude::*;
 
 /// A side core.
 pub struct Core {
     pub solid: Solid,
-    /// The core and what its widening takes of the part's own room: the halves leave it free.
+    /// The core and what its shaft takes of the part's own room: the halves leave it free.
     pub room: Solid,
     /// The way it leaves, unit.
     pub pull: DVec3,
@@ -45,15 +49,20 @@ pub const NOTHING: f64 = crate::mold::checks::CAVITY_SHARE / 2.0;
 /// Detail of undercut air below this is round-off of the sweeps, mm: a tenth of the finest layer.
 pub const FINE: f64 = 0.002;
 
-/// The part with all air filled that has the part both above and below it.
-pub fn filled(ready: &Ready) -> Solid {
+/// The part with all air filled that has the part both above and below it: what is above its undersides and below its
+/// upper sides.
+pub fn filled(ready: &Ready) -> Result<Solid, NotSolid> {
     let mesh = &ready.framed.mesh;
-    let tree = Bvh::new(mesh);
     let (lo, hi) = mesh.bounds();
-    let up = sweep::swept(&ready.solid, (mesh, &tree), Way::up(hi.z + 1.0));
-    let down = sweep::swept(&ready.solid, (mesh, &tree), Way::down(lo.z - 1.0));
-    up.common(&down)
+    let seen = Seen::along(mesh, DVec3::Z, ready.framed.snap);
+    let all = |way: Look, to: To| seen.hung_on(&seen.looking(way, |_| true), to).map(Solid::all);
+    let up = all(Look::Down, To::Along(hi.z + BEYOND))?;
+    let down = all(Look::Up, To::Against(lo.z - BEYOND))?;
+    Ok(up.common(&down))
 }
+
+/// Shafts and curtains end this far from what they must pass, mm, so that no face of theirs lies in one of the part.
+const BEYOND: f64 = 1.0;
 
 /// `tan`: of the draft of cores. `block`: corners of the mold's block.
 pub fn cores(
@@ -66,26 +75,44 @@ pub fn cores(
     let enough = NOTHING * ready.solid.volume();
     let mut left = filled.minus(&ready.solid).thick(FINE);
     let mut cores: Vec<Core> = Vec::new();
-    let tree = Bvh::new(part);
-    let ways = directions(part);
+    let (tree, ways) = (Bvh::new(part), directions(part));
     for _ in 0..MOST_DIRECTIONS {
         if left.volume() <= enough {
             break;
         }
         let Some(d) = best((part, &tree), &ways, &left.mesh()) else { break };
-        let Some(room) = room(part, &left, d, (block, tan))? else { break };
+        let view = View { ready, d, turn: upright(d), lid: reach(d, block) + GRIP, tan };
+        let room = Solid::all(rooms(&view, &left, enough)?);
         let room = cores.iter().fold(room, |c, earlier| c.minus(&earlier.room));
+        let found = apart(&room, &view, enough);
         let before = left.volume();
-        left = left.minus(&room).thick(FINE);
+        left = found.iter().fold(left, |l, core| l.minus(&core.room)).thick(FINE);
         if before - left.volume() <= enough {
             break;
         }
-        let one = |room: Solid| Core { solid: room.minus(&ready.solid).thick(FINE), room, pull: d };
-        let bodies = room.bodies().into_iter().filter(|b| b.volume() > enough);
-        cores.extend(bodies.map(one));
+        cores.extend(found);
     }
     let left_mm3 = left.volume().max(0.0);
     Ok((left_mm3 <= enough && !cores.is_empty()).then_some(Cored { filled, cores, left_mm3 }))
+}
+
+/// A room's cores, each in one body that can be gripped outside; what an earlier core leaves behind it stands loose, and is
+/// left to another direction.
+fn apart(room: &Solid, view: &View, enough: f64) -> Vec<Core> {
+    let matter = |b: &Solid| b.mesh().volume() > enough;
+    let held = |b: &Solid| b.mesh().vertices.iter().any(|v| v.dot(view.d) > view.lid - GRIP / 2.0);
+    let mut all = Vec::new();
+    for room in room.bodies().into_iter().filter(|b| matter(b) && held(b)) {
+        let room = stl::uncrossed(&room).unwrap_or(room);
+        let whole = room.minus(&view.ready.solid).thick(FINE);
+        let mut solids: Vec<Solid> = whole.bodies().into_iter().filter(|b| matter(b) && held(b)).collect();
+        let core = |solid: Solid, room: Solid| Core { solid, room, pull: view.d };
+        match solids.len() {
+            1 => all.extend(solids.pop().map(|solid| core(solid, room))),
+            _ => all.extend(solids.into_iter().map(|solid| core(solid.clone(), solid))),
+        }
+    }
+    all
 }
 
 /// Both ends of every direction of the pull search.
@@ -123,45 +150,87 @@ fn best(part: (&Mesh, &Bvh), ways: &[DVec3], left: &Mesh) -> Option<DVec3> {
     all.into_iter().max_by(better).map(|r| r.3)
 }
 
-/// The room of a core along one direction; `None` where nothing is seen from there.
-fn room(
-    part: &Mesh,
-    left: &Solid,
+/// A part seen from where a core leaves.
+struct View<'a> {
+    ready: &'a Ready,
     d: DVec3,
-    (block, tan): ((DVec3, DVec3), f64),
-) -> Result<Option<Solid>, NotSolid> {
-    let turn = upright(d);
-    let turned = |m: &Mesh| m.map(|v| turn * v);
-    let (part, air) = (turned(part), turned(&left.mesh()));
-    let lid = reach(turn, block) + GRIP;
-    let (lo, hi) = air.bounds();
-    let own = Footprint::of([lo, hi]).wider((lid - lo.z) * tan * 2.0);
-    let tree = Bvh::new(&part);
-    let near = |t: usize| {
-        let c = part.corners(t);
-        Footprint::of(c).meets(&own) && c.iter().any(|v| v.z > lo.z)
-    };
-    let shade = sweep::columns((&part, &tree), Way::down(lo.z - 1.0), near);
-    let seen = Solid::of(&air)?.minus(&shade).thick(FINE);
-    if seen.is_empty() {
-        return Ok(None);
+    turn: DMat3,
+    /// Where the core ends outside, along `d`.
+    lid: f64,
+    tan: f64,
+}
+
+/// The rooms of cores along one direction: shafts around the air that is seen, less what the part shadows.
+fn rooms(view: &View, left: &Solid, enough: f64) -> Result<Vec<Solid>, NotSolid> {
+    let (part, d) = (&view.ready.framed.mesh, view.d);
+    let seen = Seen::along(part, d, view.ready.framed.snap);
+    let low = left.mesh().vertices.iter().map(|v| v.dot(d)).fold(f64::MAX, f64::min) - 2.0 * BEYOND;
+    let above = |t: usize| part.corners(t).iter().any(|c| c.dot(d) > low);
+    let shade = Solid::all(seen.rooted(&seen.looking(Look::Down, above), To::Against(low - BEYOND))?);
+    let air = left.minus(&shade).thick(FINE);
+    let bodies = air.bodies().into_iter().map(|b| b.mesh()).filter(|m| m.volume() > enough);
+    let shafts: Vec<Solid> = bodies.filter_map(|m| shaft(view, &m)).collect();
+    Ok(shafts.into_iter().map(|s| cleared(&s, &shade, view.turn)).collect())
+}
+
+/// A shaft less the shade. Shades that meet in a line pinch what is left there; moved a little they overlap.
+fn cleared(shaft: &Solid, shade: &Solid, turn: DMat3) -> Solid {
+    let plain = shaft.minus(shade).thick(FINE);
+    if stl::uncrossed(&plain).is_some() {
+        return plain;
     }
-    let mesh = seen.mesh();
-    let out = Way::up(lid);
-    let straight = sweep::swept(&seen, (&mesh, &Bvh::new(&mesh)), out);
-    let wide = Solid::all(sweep::wedges(&mesh, out, lid, tan, |_| true));
-    let whole = straight.with(&wide).minus(&shade).thick(FINE);
-    (!whole.is_empty()).then_some(whole).map(|w| back(&w, turn)).transpose()
+    let moved = |by: DVec3| shade.moved(turn.transpose() * by);
+    let wide = [DVec3::X, DVec3::Y].map(|a| moved(a * ASIDE).with(&moved(a * -ASIDE)));
+    let [x, y] = wide.map(|w| shaft.minus(&shade.with(&w)).thick(FINE));
+    [x, y].into_iter().find(|s| stl::uncrossed(s).is_some()).unwrap_or(plain)
 }
 
-fn back(solid: &Solid, turn: DMat3) -> Result<Solid, NotSolid> {
-    Solid::of(&solid.mesh().map(|v| turn.transpose() * v))
+/// By how much, mm: eighty steps of the grid of molds, a hundredth of the finest layer.
+const ASIDE: f64 = 80.0 * stl::GRID;
+
+/// From below a body of air out of the block: the hull of its outline, set off by `SEAT` and widened by draft.
+fn shaft(view: &View, air: &Mesh) -> Option<Solid> {
+    let thick = bulk(air);
+    let corners = thick.iter().flat_map(|&t| air.corners(t)).map(|v| view.turn * v);
+    let points: Vec<DVec3> = corners.collect();
+    let foot = points.iter().map(|p| p.z).fold(f64::INFINITY, f64::min) - BEYOND;
+    let outline = hull(points.into_iter().map(flat).collect());
+    let wide = |level: f64| SEAT + (level - foot) * view.tan;
+    let around =
+        |level: f64| outline.iter().flat_map(move |&p| circle(p, wide(level)).map(move |q| q.extend(level)));
+    let ends: Vec<DVec3> = around(foot).chain(around(view.lid)).map(|p| view.turn.transpose() * p).collect();
+    let hull = Solid::hull(&ends);
+    (!hull.is_empty()).then_some(hull)
 }
 
-/// How far the block goes along the turned z.
-fn reach(turn: DMat3, (lo, hi): (DVec3, DVec3)) -> f64 {
-    let z = turn.row(2);
-    (0..3).map(|k| (z[k] * lo[k]).max(z[k] * hi[k])).sum()
+/// A core stands over the rim of what it forms by this much, mm: two lines of a 0.4 mm nozzle, which seal it.
+const SEAT: f64 = 0.8;
+
+/// Sides of the polygon that stands for a circle around a corner; it is drawn around the circle, so that no draft is lost.
+const SIDES: u32 = 16;
+
+fn circle(middle: DVec2, radius: f64) -> impl Iterator<Item = DVec2> {
+    let r = radius / (std::f64::consts::PI / f64::from(SIDES)).cos();
+    (0..SIDES).map(move |k| {
+        middle + DVec2::from_angle(std::f64::consts::TAU * (f64::from(k) + 0.5) / f64::from(SIDES)) * r
+    })
+}
+
+/// Facets behind which there is more than round-off: skins that two walls leave between them do not count.
+fn bulk(air: &Mesh) -> Vec<usize> {
+    let tree = Bvh::new(air);
+    let thick = |t: &usize| {
+        let [a, b, c] = air.corners(*t);
+        let inward = -(b - a).cross(c - a).normalize_or_zero();
+        let middle = (a + b + c) / 3.0 + inward * (FINE / 2.0);
+        !ray::first((air, &tree), middle, inward, 0.0).is_none_or(|h| h.at < FINE / 2.0)
+    };
+    (0..air.triangles.len()).filter(thick).collect()
+}
+
+/// How far the block goes along a direction.
+fn reach(d: DVec3, (lo, hi): (DVec3, DVec3)) -> f64 {
+    (0..3).map(|k| (d[k] * lo[k]).max(d[k] * hi[k])).sum()
 }
 
 /// Which core (of their meshes) forms a facet that the halves do not reach: the one whose wall it lies on.

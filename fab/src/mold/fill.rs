@@ -15,9 +15,9 @@ use glam::{DVec2, DVec3};
 const INTO: f64 = 0.25;
 const DEEPEST: f64 = 0.5;
 
-/// How far a column that ends on the part at `at` goes on into it along z.
-pub fn into(part: (&Mesh, &Bvh), at: DVec3, way: f64) -> f64 {
-    way * (INTO * ray::matter(part, at, way)).min(DEEPEST)
+/// How far a column that ends on the part at `at` goes on into it along a unit vector.
+pub fn into(part: (&Mesh, &Bvh), at: DVec3, along: DVec3) -> f64 {
+    (INTO * ray::matter(part, at, along)).min(DEEPEST)
 }
 
 /// The part with its undercuts filled, and the volume that came to it, mm3.
@@ -36,9 +36,9 @@ pub fn fill(part: &Solid, mesh: &Mesh, blocked: &Blocked) -> Result<(Solid, f64)
 /// The air between the two facets over the outline that they share.
 fn column(part: (&Mesh, &Bvh), o: &Overlap) -> Result<Option<Solid>, NotSolid> {
     let height = |t: u32, p: DVec2| shadow::height(&part.0.corners(t as usize), p);
-    let end = |p: DVec2, z: f64, way: f64| p.extend(z + into(part, p.extend(z), way));
-    let foot = o.outline.iter().map(|&p| end(p, height(o.lower, p), -1.0));
-    let top = o.outline.iter().map(|&p| end(p, height(o.upper, p).max(height(o.lower, p)), 1.0));
+    let end = |p: DVec2, z: f64, way: DVec3| p.extend(z) + way * into(part, p.extend(z), way);
+    let foot = o.outline.iter().map(|&p| end(p, height(o.lower, p), DVec3::NEG_Z));
+    let top = o.outline.iter().map(|&p| end(p, height(o.upper, p).max(height(o.lower, p)), DVec3::Z));
     let body = prism(foot.collect(), top.collect());
     if body.volume() <= 0.0 { Ok(None) } else { Solid::of(&body).map(Some) }
 }

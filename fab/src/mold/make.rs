@@ -75,7 +75,8 @@ type Settled<'a> = (&'a Solid, Option<(Mesh, f64)>);
 
 fn keep(mold: &mut Mold, (name, kind): (&str, Kind), (solid, settled): Settled, pull: DVec3, copies: usize) {
     let (mesh, closed) = settled.map_or_else(|| (solid.mesh(), false), |(m, _)| (m, true));
-    if !closed && !kind.is_made() {
+    let plain = closed && (kind.is_made() || stl::is_plain(&mesh));
+    if !kind.is_made() && !plain {
         let what = format!("there is no OpenSCAD source: {name} has detail that f32 can not hold apart");
         let found = finding(mold, Severity::Note, vec![], what, "the STL files are whole without it");
         mold.findings.push(found);

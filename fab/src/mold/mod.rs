@@ -5,6 +5,7 @@
 
 pub mod checks;
 mod cores;
+mod curtain;
 pub mod figures;
 pub mod fill;
 pub mod fins;
@@ -26,7 +27,6 @@ mod scad;
 pub mod shadow;
 mod silicone;
 pub mod surroundings;
-pub mod sweep;
 pub mod tops;
 mod tree;
 mod two_part;

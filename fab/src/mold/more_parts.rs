@@ -3,8 +3,9 @@
 //! The pull of the search is tried, and a few others: the fewest cores win. Not promised: that a mold is found where there
 //! is one; where none is, the silicone route is.
 
+use crate::files::stl;
 use crate::mesh::{Mesh, area};
-use crate::mold::checks::core_name;
+use crate::mold::checks::{self, Halves, core_name};
 use crate::mold::cores::{self, Core, Cored};
 use crate::mold::layout::{self, Around};
 use crate::mold::make::{blank, finding, push};
@@ -40,13 +41,15 @@ pub fn mold(part: &Mesh, ready: Ready, spec: &MoldSpec) -> Result<Mold, MoldErro
         keep(candidate(prepare::along(part, spec, pull)?, spec)?);
     }
     found.sort_by(|a, b| a.rank.0.cmp(&b.rank.0).then(a.rank.1.total_cmp(&b.rank.1)));
-    for candidate in found {
-        match built(candidate, spec)? {
-            Ok(mut mold) => {
-                mold.pull.candidates = refused.pull.candidates;
-                return Ok(mold);
+    for candidate in &found {
+        for formed in [Formed::Part, Formed::Filled] {
+            match built(candidate, formed, spec)?.and_then(proven) {
+                Ok(mut mold) => {
+                    mold.pull.candidates = refused.pull.candidates;
+                    return Ok(mold);
+                }
+                Err(w) => why.push(w),
             }
-            Err(w) => why.push(w),
         }
     }
     why.sort();
@@ -68,7 +71,7 @@ fn refusal(mold: &Mold, why: &str) -> Finding {
 /// The side cores of a pull, or why there are none.
 fn candidate(mut ready: Ready, spec: &MoldSpec) -> Result<Result<Candidate, String>, MoldError> {
     let f = &spec.figures;
-    let filled = cores::filled(&ready);
+    let filled = cores::filled(&ready)?;
     let (mesh, snap, around) = (filled.mesh(), ready.framed.snap, Around::printed(f));
     ready.plane = parting::plane(&mesh, &parting::looks(&mesh, snap), snap);
     let plan = layout::plan(&ready.framed.mesh, ready.plane.height, &ready.tops, f, around);
@@ -92,15 +95,43 @@ fn candidate(mut ready: Ready, spec: &MoldSpec) -> Result<Result<Candidate, Stri
 const KEYS: usize = 3;
 const BOLTS: usize = 2;
 
+/// What the halves form beside the cores.
+#[derive(Clone, Copy)]
+enum Formed {
+    /// The part as it is.
+    Part,
+    /// The part with its undercuts filled, where bits of them that are too small for a core would hold a half.
+    Filled,
+}
+
+/// The mold, if its pieces as they will be written keep what is measured on them.
+fn proven(mold: Mold) -> Result<Mold, String> {
+    let mesh = |name: &str| mold.pieces.iter().find(|p| p.name == name).map(|p| stl::snapped(&p.mesh));
+    let (Some(lower), Some(upper)) = (mesh("lower"), mesh("upper")) else {
+        return Err("it has not both halves".into());
+    };
+    let own = mold.pieces.iter().filter(|p| p.kind == Kind::Core);
+    let own: Vec<(Mesh, DVec3)> = own.map(|p| (stl::snapped(&p.mesh), p.pull)).collect();
+    let cores = own.iter().map(|(m, d)| (m, *d)).collect();
+    let all = checks::rigid(&mold, &Halves { lower: &lower, upper: &upper, cores }).map_err(|e| e.0)?;
+    let wrong: Vec<String> =
+        all.iter().filter(|m| !m.kept).map(|m| format!("{} is {:.4} {}", m.of, m.value, m.unit)).collect();
+    if wrong.is_empty() { Ok(mold) } else { Err(wrong.join(", ")) }
+}
+
 /// The mold of a candidate, or why it can not be made.
-fn built(candidate: Candidate, spec: &MoldSpec) -> Result<Result<Mold, String>, MoldError> {
+fn built(candidate: &Candidate, formed: Formed, spec: &MoldSpec) -> Result<Result<Mold, String>, MoldError> {
     let Candidate { ready, cored, plan, .. } = candidate;
-    let mut mold = blank(&ready, spec, plan, spec.figures.draft.value);
+    let mut mold = blank(ready, spec, plan.clone(), spec.figures.draft.value);
     mold.filled_mm3 = Some(cored.left_mm3);
-    let below = two_part::below(&mold, &cored.filled, &ready)?;
+    let below = two_part::below(&mold, &cored.filled, ready)?;
+    let cavity = match formed {
+        Formed::Part => &ready.solid,
+        Formed::Filled => &cored.filled,
+    };
     let tools = Tools::of(&mold.plan, &spec.figures)?;
     let rooms = Solid::all(cored.cores.iter().map(|c| c.room.clone()).collect());
-    for (name, half, pull) in rigid::halves(&cored.filled, &below, &mold.plan, &tools)? {
+    for (name, half, pull) in rigid::halves(cavity, &below, &mold.plan, &tools)? {
         match whole(half.minus(&rooms), ready.solid.volume()) {
             Ok(half) => push(&mut mold, name, Kind::Half, &half, pull, 1),
             Err(off) => return Ok(Err(format!("side cores would cut {off:.3} mm3 off the {name} half"))),
@@ -116,8 +147,8 @@ fn built(candidate: Candidate, spec: &MoldSpec) -> Result<Result<Mold, String>, 
         push(&mut mold, &format!("{}-room", core_name(k)), Kind::Room, &core.room, DVec3::ZERO, 0);
     }
     assign(&mut mold, &cored.cores);
-    told(&mut mold, &cored);
-    two_part::finish(mold, &cored.filled, &tools).map(Ok)
+    told(&mut mold, cored);
+    two_part::finish(mold, (&ready.solid, &cored.filled), &tools).map(Ok)
 }
 
 /// A half in one body: crumbs within what the cavity may be off are left away; more than that, in mm3, is too much.

@@ -6,6 +6,7 @@
 
 use crate::bvh::Bvh;
 use crate::mesh::{Mesh, area};
+use crate::mold::curtain::{Seen, To};
 use crate::mold::fill::{into, prism};
 use crate::solid::{NotSolid, Solid, cuboid};
 use glam::DVec3;
@@ -101,24 +102,25 @@ pub fn below(
         return Ok(half);
     }
     let other = Solid::of(&cuboid(lo.with_z(plane.height), hi))?;
-    let mesh = cavity.mesh();
-    let part = (&mesh, &Bvh::new(&mesh));
     let wrong = |cut: &Solid, way: Look| -> Result<Solid, NotSolid> {
-        let columns = wrong_side(part, cut, way, plane.height, snap);
-        let solid = |c: &Mesh| if fat > 0.0 { Ok(fattened(c, fat)) } else { Solid::of(c) };
-        Ok(Solid::all(columns.iter().map(solid).collect::<Result<_, _>>()?))
+        Ok(Solid::all(wrong_side(&cut.mesh(), way, plane.height, snap, fat)?))
     };
     let raised = wrong(&cavity.common(&other), Look::Down)?;
     let lowered = wrong(&cavity.common(&half), Look::Up)?;
     Ok(half.minus(&lowered).with(&raised))
 }
 
-/// Columns between the plane and the facets that look the wrong way there, and on into the part.
-fn wrong_side(part: (&Mesh, &Bvh), cut: &Solid, way: Look, height: f64, snap: f64) -> Vec<Mesh> {
-    let mesh = cut.mesh();
-    let off_plane = |t: usize| mesh.corners(t).iter().any(|c| (c.z - height).abs() > WALL_IN_SNAPS * snap);
-    let wrong = (0..mesh.triangles.len()).filter(|&t| look(&mesh, t, snap) == way && off_plane(t));
-    wrong.map(|t| column(part, mesh.corners(t), height)).collect()
+/// What is between the plane and the facets that look the wrong way there, and on into the part.
+fn wrong_side(cut: &Mesh, way: Look, height: f64, snap: f64, fat: f64) -> Result<Vec<Solid>, NotSolid> {
+    let seen = Seen::along(cut, DVec3::Z, snap);
+    let off_plane = |t: usize| cut.corners(t).iter().any(|c| (c.z - height).abs() > WALL_IN_SNAPS * snap);
+    let wrong = seen.looking(way, off_plane);
+    if fat > 0.0 {
+        let tree = Bvh::new(cut);
+        let fat = |t: &u32| fattened(&column((cut, &tree), cut.corners(*t as usize), height), fat);
+        return Ok(wrong.iter().map(fat).collect());
+    }
+    seen.rooted(&wrong, if way == Look::Down { To::Against(height) } else { To::Along(height) })
 }
 
 fn fattened(column: &Mesh, fat: f64) -> Solid {
@@ -129,12 +131,12 @@ fn fattened(column: &Mesh, fat: f64) -> Solid {
 
 fn column(part: (&Mesh, &Bvh), c: [DVec3; 3], height: f64) -> Mesh {
     let onto = |c: [DVec3; 3]| c.map(|v| v.with_z(height)).to_vec();
-    let inner = |c: [DVec3; 3], way: f64| c.map(|v| v + DVec3::Z * into(part, v, way)).to_vec();
+    let inner = |c: [DVec3; 3], way: DVec3| c.map(|v| v + way * into(part, v, way)).to_vec();
     if (c[1] - c[0]).cross(c[2] - c[0]).z > 0.0 {
-        return prism(inner(c, -1.0), onto(c));
+        return prism(inner(c, DVec3::NEG_Z), onto(c));
     }
     let c = [c[0], c[2], c[1]];
-    prism(onto(c), inner(c, 1.0))
+    prism(onto(c), inner(c, DVec3::Z))
 }
 
 #[cfg(test)]

@@ -171,9 +171,9 @@ const MUCH_THE_SAME: f64 = 0.866;
 const SAME_PULL: f64 = 0.99996;
 
 /// Other pulls that are worth a try with side cores.
-const OTHERS: usize = 4;
+const OTHERS: usize = 6;
 
-/// First square to the largest faces, as people pull, then whatever leaves little undercut.
+/// First the axes, as people draw, then square to the largest faces, as they pull, then whatever leaves little undercut.
 fn others(part: &Mesh, search: &Search, chosen: DVec3) -> Vec<DVec3> {
     let faces = pull::large_normals(part);
     let mut kept = vec![chosen];
@@ -182,6 +182,7 @@ fn others(part: &Mesh, search: &Search, chosen: DVec3) -> Vec<DVec3> {
             kept.push(d);
         }
     };
+    DVec3::AXES.iter().for_each(|d| keep(*d, SAME_PULL, OTHERS));
     faces.iter().for_each(|d| keep(*d, SAME_PULL, OTHERS - 1));
     search.best.iter().for_each(|c| keep(c.direction, MUCH_THE_SAME, OTHERS));
     kept.split_off(1)

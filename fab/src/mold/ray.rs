@@ -36,13 +36,13 @@ pub fn any(target: (&Mesh, &Bvh), origin: DVec3, along: DVec3, from: f64) -> boo
     found
 }
 
-/// How much matter lies right behind a point of the surface along z (`way` is 1 or -1), mm; 0 at a sharp rim.
-pub fn matter((mesh, tree): (&Mesh, &Bvh), from: DVec3, way: f64) -> f64 {
+/// How much matter lies right behind a point of the surface along a unit vector, mm; 0 at a sharp rim.
+pub fn matter((mesh, tree): (&Mesh, &Bvh), from: DVec3, along: DVec3) -> f64 {
     let (lo, hi) = mesh.bounds();
-    let hit = first((mesh, tree), from, DVec3::Z * way, (hi - lo).length() * OFF_SURFACE);
+    let hit = first((mesh, tree), from, along, (hi - lo).length() * OFF_SURFACE);
     let leaves = |h: &Hit| {
         let [a, b, c] = mesh.corners(h.triangle as usize);
-        (b - a).cross(c - a).z * way > 0.0
+        (b - a).cross(c - a).dot(along) > 0.0
     };
     hit.filter(leaves).map_or(0.0, |h| h.at)
 }

@@ -154,7 +154,8 @@ pub fn clip(mut subject: Vec<DVec2>, by: Vec<DVec2>) -> Vec<DVec2> {
     subject
 }
 
-fn area(p: &[DVec2]) -> f64 {
+/// Area of a polygon, counter-clockwise.
+pub fn area(p: &[DVec2]) -> f64 {
     let Some(&o) = p.first() else { return 0.0 };
     p.windows(2).map(|w| (w[0] - o).perp_dot(w[1] - o)).sum::<f64>() / 2.0
 }

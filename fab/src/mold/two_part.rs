@@ -37,7 +37,7 @@ pub fn mold(part: &Mesh, ready: Ready, spec: &MoldSpec) -> Result<Mold, MoldErro
     let halves = rigid::halves(cavity, &below, &mold.plan, &tools)?;
     let casts = halves.map(|(name, solid, pull)| Cast { name, kind: Kind::Half, solid, pull });
     push_all(&mut mold, &casts);
-    finish(mold, cavity, &tools)
+    finish(mold, (cavity, cavity), &tools)
 }
 
 /// How much wider the steps of the file for OpenSCAD are, mm: so that two that meet in an edge overlap.
@@ -48,10 +48,10 @@ pub fn below(mold: &Mold, cavity: &Solid, ready: &Ready) -> Result<Solid, NotSol
     parting::below((mold.plan.low, mold.plan.high), cavity, &ready.plane, ready.framed.snap, 0.0)
 }
 
-/// The rest of a rigid mold that has its pieces: sources, volumes, steps, pictures.
-pub fn finish(mut mold: Mold, cavity: &Solid, tools: &Tools) -> Result<Mold, MoldError> {
+/// The rest of a rigid mold that has its pieces: sources, volumes, steps, pictures. `plain`: the cavity without undercuts.
+pub fn finish(mut mold: Mold, (cavity, plain): (&Solid, &Solid), tools: &Tools) -> Result<Mold, MoldError> {
     let pictures = || rayon::join(|| pictures::maps(&mold), || pictures::opened(&mold));
-    let (file, (maps, opened)) = rayon::join(|| stepped(&mold, cavity), pictures);
+    let (file, (maps, opened)) = rayon::join(|| stepped(&mold, plain), pictures);
     mold.pieces.push(source("part", Kind::Part, &mold.part));
     if let Some(file) = file? {
         push(&mut mold, "below", Kind::Below, &file, DVec3::ZERO, 0);

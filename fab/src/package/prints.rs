@@ -58,7 +58,7 @@ pub fn stem(output: &Output, p: usize) -> String {
 
 fn grounded(mesh: &Mesh) -> Mesh {
     let down = low(mesh);
-    stl::snapped(&mesh.map(|v| v - down))
+    stl::snapped_closed(&mesh.map(|v| v - down))
 }
 
 /// Each part alone as 3MF, beside its STL.
@@ -294,7 +294,7 @@ pub fn assembly(output: &Output, package: &mut PackageReport) -> Vec<Attachment>
     let corner = all.iter().map(low).fold(DVec3::INFINITY, DVec3::min);
     let object = |((id, _), m): (&(String, Mesh), &Mesh)| Object {
         name: id.clone(),
-        mesh: stl::snapped(&m.map(|v| v - corner)),
+        mesh: stl::snapped_closed(&m.map(|v| v - corner)),
     };
     let file = "assembly.mm.3mf".to_string();
     let model = Model {

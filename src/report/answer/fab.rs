@@ -114,6 +114,8 @@ pub struct PartAnswer {
     /// `thinnest` wall and `sharpest` edge, each null where its process makes them.
     pub wall: Option<Object>,
     pub least_wall_mm: f64,
+    /// The widest slot of a printed shape that is narrower than the fit between two faces.
+    pub slot: Option<Object>,
     pub checks: Vec<Object>,
 }
 
