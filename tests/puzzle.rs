@@ -3,6 +3,8 @@
 //! Six-piece burrs by their numbers (one more than the sum of the bits of the cubes taken away; Cutler, *A Computer
 //! Analysis of All 6-Piece Burrs*; von Kanel, IBM Research, *Burr puzzles*), with published levels.
 
+mod brute;
+mod groups;
 mod maze;
 
 use crate::support;
