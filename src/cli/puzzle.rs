@@ -36,7 +36,17 @@ pub fn loaded(file: &Path, asked: &PuzzleArgs, watch: &Watch) -> Result<Loaded, 
     let mut remarks = Vec::new();
     if let Some(puzzle) = &mut meshes.puzzle {
         if puzzle.solution.is_none() {
-            let wrong = |(what, hint)| Fault { file: shown, place: None, key: String::new(), what, hint };
+            let (number, of) = puzzle.number;
+            let several = of > 1 && asked.problem.is_none();
+            let which = if several {
+                format!("problem {number} of {of} (--problem asks for another): ")
+            } else {
+                String::new()
+            };
+            let wrong = |(what, hint): (String, String)| {
+                let what = which + &what;
+                Fault { file: shown, place: None, key: String::new(), what, hint }
+            };
             let (solution, how) = match found(puzzle, watch) {
                 Err(_) if watch.is_stopped() => {
                     return Err(Trouble::Stopped("while a way to fill the result was searched".into()));

@@ -13,7 +13,7 @@ fn bound(ring: &str, rod: &str) -> String {
         "<puzzle><shapes><voxel x=\"3\" y=\"3\" z=\"1\" name=\"ring\" type=\"0\">####_####</voxel>\
          <voxel x=\"1\" y=\"2\" z=\"3\" name=\"rod\" type=\"0\">##_###</voxel>\
          <voxel x=\"1\" y=\"1\" z=\"1\" name=\"cube\" type=\"0\">#</voxel>\
-         <voxel x=\"3\" y=\"3\" z=\"4\" type=\"0\">_#__#____#########_#__#_____#_____</voxel></shapes><problems><problem>\
+         <voxel x=\"3\" y=\"3\" z=\"4\" type=\"0\">_#__#____#########_#__#________#____</voxel></shapes><problems><problem>\
          <shapes><shape id=\"0\"{ring}</shape><shape id=\"1\"{rod}</shape><shape id=\"2\"/></shapes><result id=\"3\"/>\
          <bitmap/>{solved}</problem></problems></puzzle>"
     )

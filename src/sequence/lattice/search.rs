@@ -39,6 +39,9 @@ pub struct Scene {
 /// States that are looked at between two looks at the bound; they share the threads.
 const BLOCK: usize = 512;
 
+/// States fewer than these are looked at by one thread: a state takes some microseconds, as waking another thread does.
+const FEW: usize = 8;
+
 impl Scene {
     pub fn new(pieces: Vec<Piece>) -> Scene {
         Scene::with(pieces, &mut Tables::default())
@@ -147,8 +150,12 @@ pub fn search(scene: &Scene, members: &[usize], start: &[Shift], most: usize, lo
             return Search { end: End::Stopped { moves: depth }, states: states.count() };
         }
         let block = head..states.count().min(head + BLOCK).min(layer.max(head + 1));
-        let found: Vec<Next> =
-            block.clone().into_par_iter().map(|k| next(&scene.gaps(members, states.get(k)))).collect();
+        let one = |k: usize| next(&scene.gaps(members, states.get(k)));
+        let found: Vec<Next> = if block.len() < FEW {
+            block.clone().map(one).collect()
+        } else {
+            block.clone().into_par_iter().map(one).collect()
+        };
         for (k, next) in block.clone().zip(found) {
             match next {
                 Next::Leave { parts, way } => {
