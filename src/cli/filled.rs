@@ -13,8 +13,8 @@ use crate::spec::puzzle::{Puzzle, Solution};
 use crate::watch::{All, Watch};
 use std::ops::ControlFlow;
 
-/// Placements that are tried to fill a result: about half a minute for a puzzle of twenty-five pieces.
-const MOST_WORK: usize = 3_000_000;
+/// Placements that are looked at to fill a result, each as often as it is: about a minute's work at twenty nanoseconds.
+const MOST_WORK: usize = 3_000_000_000;
 
 /// Ways to fill the result that are taken apart before the first one is taken.
 const MOST_TRIED: usize = 1_000_000;

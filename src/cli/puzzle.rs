@@ -17,7 +17,7 @@ use crate::sequence::lattice::{self, NoLattice, apart::written};
 use crate::sequence::{Outcome, Plan};
 use crate::spec::Subject;
 use crate::spec::puzzle::groups::Groups;
-use crate::spec::puzzle::{self, Choice, Puzzle, text::text};
+use crate::spec::puzzle::{self, Choice, Puzzle, Solution, text::text};
 use crate::watch::Watch;
 use std::path::Path;
 
@@ -36,23 +36,7 @@ pub fn loaded(file: &Path, asked: &PuzzleArgs, watch: &Watch) -> Result<Loaded, 
     let mut remarks = Vec::new();
     if let Some(puzzle) = &mut meshes.puzzle {
         if puzzle.solution.is_none() {
-            let (number, of) = puzzle.number;
-            let several = of > 1 && asked.problem.is_none();
-            let which = if several {
-                format!("problem {number} of {of} (--problem asks for another): ")
-            } else {
-                String::new()
-            };
-            let wrong = |(what, hint): (String, String)| {
-                let what = which + &what;
-                Fault { file: shown, place: None, key: String::new(), what, hint }
-            };
-            let (solution, how) = match found(puzzle, watch) {
-                Err(_) if watch.is_stopped() => {
-                    return Err(Trouble::Stopped("while a way to fill the result was searched".into()));
-                }
-                found => found.map_err(wrong)?,
-            };
+            let (solution, how) = solved(puzzle, asked, &shown, watch)?;
             puzzle.solution = Some(solution);
             remarks.push(how);
         }
@@ -61,6 +45,28 @@ pub fn loaded(file: &Path, asked: &PuzzleArgs, watch: &Watch) -> Result<Loaded, 
         return Ok(Loaded { remarks, ..Loaded::new(spec, text, watch) });
     }
     Ok(Loaded::new(spec, String::new(), watch))
+}
+
+/// A way to fill the result, and in words how it was found; `file` names the file in a fault.
+fn solved(
+    puzzle: &Puzzle,
+    asked: &PuzzleArgs,
+    file: &str,
+    watch: &Watch,
+) -> Result<(Solution, String), Trouble> {
+    let (number, of) = puzzle.number;
+    let several = of > 1 && asked.problem.is_none();
+    let which = several.then(|| format!("problem {number} of {of} (--problem asks for another): "));
+    let wrong = |(what, hint): (String, String)| {
+        let what = which.unwrap_or_default() + &what;
+        Fault { file: file.into(), place: None, key: String::new(), what, hint }
+    };
+    match found(puzzle, watch) {
+        Err(_) if watch.is_stopped() => {
+            Err(Trouble::Stopped("while a way to fill the result was searched".into()))
+        }
+        found => Ok(found.map_err(wrong)?),
+    }
 }
 
 /// What was taken where nothing was said.

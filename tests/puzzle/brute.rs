@@ -87,7 +87,7 @@ fn a_plain_search_counts_the_same_moves() {
     ];
     for numbers in sets {
         let puzzle = puzzle(&burr(numbers, 6));
-        cover::assemblies(&puzzle, 100_000, |solution| {
+        cover::assemblies(&puzzle, 100_000_000, |solution| {
             let lying = placed(&puzzle, &solution).expect("it fits");
             let pieces: Vec<BTreeSet<At>> =
                 lying.iter().map(|p| p.voxels.iter().copied().collect()).collect();

@@ -98,7 +98,7 @@ fn pieces_that_need_not_be_used_fill_what_may_not_stay_empty() {
     };
     let count = |text: &str| {
         let mut ways = Vec::new();
-        let end = assemblies(&puzzle(text), 1000, |s| {
+        let end = assemblies(&puzzle(text), 10_000, |s| {
             ways.push(s.placements.iter().flatten().count());
             ControlFlow::Continue(())
         });

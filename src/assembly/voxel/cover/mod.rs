@@ -80,7 +80,7 @@ pub fn assemblies_watched(
     }
 }
 
-/// Gives ways to `take` until it breaks or `most_work` placements were tried.
+/// Gives ways to `take` until it breaks or `most_work` placements were looked at, each as often as it was.
 pub fn assemblies(
     puzzle: &Puzzle,
     most_work: usize,
@@ -147,7 +147,7 @@ impl<F: FnMut(Solution) -> ControlFlow<()>> Search<'_, F> {
             if self.watch.is_stopped() {
                 return (ControlFlow::Break(Covered::Stopped), stand);
             }
-            self.work -= 1;
+            self.work = self.work.saturating_sub(level.active.len());
             let entry = self.ways.entry(w);
             let before = stand.left[entry];
             stand.left[entry] = (before.0.saturating_sub(1), before.1 - 1);
