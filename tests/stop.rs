@@ -1,13 +1,16 @@
 //! Progress and Ctrl-C: a search that a user stops leaves a well-formed answer that says so, and a terminal sees how far
 //! it is.
 
-use crate::support::{joined, window};
+use crate::support::{joined, window, woven};
+use glam::DVec3;
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
 use std::time::{Duration, Instant};
 use weavelock::repeats::{AsMade, Search, repeats_watched};
+use weavelock::sequence::wanted::{Ask, Table, Wish, prefer};
 use weavelock::sequence::{Motions, Outcome, plan_by, plan_watched};
+use weavelock::verify::plan::{Checked, check};
 use weavelock::watch::Watch;
 
 /// A closed case of 6 x 6 x 6 voxels with five loose ones in it: nothing comes apart, and there are hundreds of millions
@@ -166,6 +169,25 @@ fn what_was_found_before_a_stop_is_kept_and_nothing_is_said_of_the_rest() {
     };
     let part = plan_watched(asm, &all, patches, Motions::Any, &watch, stops).expect("sane parts");
     assert_eq!((part.steps, part.stopped), (whole.steps, !whole.stuck.is_empty()));
+}
+
+#[test]
+fn a_plan_stands_when_its_wishes_are_stopped() {
+    let swatch = "[swatch]\nwefts = 2\nwarps = 2\ncut = \"tiles\"\nrepeat = 1\n";
+    let made = joined(&woven([1, 1, 1], 4, swatch));
+    let (asm, patches) = (&made.assembly, &made.patches);
+    let all: Vec<_> = asm.ids().collect();
+    let found = plan_by(asm, &all, patches, Motions::Straight, |_| None::<()>).expect("sane parts");
+    let ask = Ask { up: DVec3::Z, table: Table::There, ranked: Wish::RANKED, flexible: Default::default() };
+    let watch = Watch::default();
+    let mut whole = found.clone();
+    prefer(asm, patches, &mut whole, &ask, false, &watch);
+    assert_eq!((whole.outcome, whole.stopped), (Outcome::Assembled, false));
+    watch.stop();
+    let mut cut = found.clone();
+    let came = prefer(asm, patches, &mut cut, &ask, false, &watch);
+    assert_eq!((cut.outcome, cut.stopped, came.judged.count(Wish::Air)), (Outcome::Assembled, true, None));
+    assert!(matches!(check(asm, &cut), Checked::Valid { .. }), "whatever its order, it is a plan");
 }
 
 #[test]

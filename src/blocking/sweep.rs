@@ -26,6 +26,12 @@ pub fn meets(view: &View, i: PartIx, j: PartIx, touch: Touch) -> Option<Meeting>
     meetings(view, i, j, touch, Some)
 }
 
+/// Whether boxes leave it open that some cells meet; None of `meetings` where they do not.
+pub fn near(view: &View, i: PartIx, j: PartIx, touch: Touch) -> bool {
+    let ((seen_i, at_i), (seen_j, at_j)) = (view.part(i), view.part(j));
+    !apart(&seen_i.whole, &seen_j.whole.shift(at_j - at_i), touch)
+}
+
 /// The first answer that `pick` gives for a pair of cells that meet.
 pub fn meetings<T>(
     view: &View,

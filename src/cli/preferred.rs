@@ -95,7 +95,15 @@ pub fn applied(placed: &Placed, found: PlanAnswer, asked: &Asked) -> Result<Plan
     let made = with_clearance(asm, patches, found.clearance_mm / asm.mm_per_unit)
         .map_err(|e| argument(e.to_string(), "give a smaller --clearance".into()))?;
     let mut found = found;
+    let before = found.plan.stopped;
     let came = prefer(if air { &made } else { asm }, patches, &mut found.plan, &ask, air, &placed.watch);
+    if found.plan.stopped && !before {
+        found.remarks.push(format!(
+            "stopped by the user while wishes were looked at, after {} sets and directions: the plan stands, its order is \
+             the best until then, and what was not judged is undecided",
+            came.looked_at
+        ));
+    }
     Ok(answer::preferred(asm, found, &ask, &came))
 }
 
@@ -143,11 +151,13 @@ fn wishes(a: &PreferredAnswer) -> Table {
     }
 }
 
+/// A tenth of a percent is as fine as a hand can tell.
+fn share(of_all: f64) -> String {
+    if of_all < 0.001 { "< 0.1 %".into() } else { format!("{:.1} %", 100.0 * of_all) }
+}
+
 fn hands(a: &PreferredAnswer) -> Table {
-    let rows = a
-        .held_in_air
-        .iter()
-        .map(|h| vec![h.step.to_string(), h.parts.join(", "), format!("{:.1} %", 100.0 * h.share)]);
+    let rows = a.held_in_air.iter().map(|h| vec![h.step.to_string(), h.parts.join(", "), share(h.share)]);
     Table {
         caption:
             "Hold these once the step is done, until more is in place; share of the weight, frictionless"

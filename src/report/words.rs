@@ -174,7 +174,8 @@ fn outcome<C>(plan: &Plan<C>) -> Chapter {
                 "Looked at were single straight moves, straight moves that stop half way, turns and joint motions, until \
                  the counted work was used up; how far each part got is told below."
             } else if excluded {
-                "No group of them can leave by one straight move; turns, and moves that stop half way, were not tried."
+                "No group of them can leave by one straight move. None was found to begin a turn or a move that stops half \
+                 way: in large sets only single parts, and parts with all that they touch, are asked."
             } else {
                 "The search gave up before every straight move was excluded."
             };

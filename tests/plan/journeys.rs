@@ -1,7 +1,9 @@
 //! The planner beyond single straight moves: every plan that it gives is checked by the checker.
 
 use super::build::turned;
-use super::made::{hook, ring_of_three, thread, twist_lock, two_bends};
+use super::made::{
+    hook, ring_beside_dice, ring_of_three, thread, twist_lock, twist_lock_over_dice, two_bends,
+};
 use super::{Checked, Made, Motion, Outcome, Plan, check};
 use weavelock::assembly::PartIx;
 use weavelock::sequence::{Motions, plan_by};
@@ -44,6 +46,22 @@ fn a_twist_lock_is_turned_and_pulled() {
         let p = assembled(&turned(&twist_lock(0.0).0, angle));
         assert!(kinds(&p).contains(&"screw") && p.steps.len() <= 3, "{p:#?}");
     }
+}
+
+/// Of a set of twenty-six parts one turns; the dice cannot leave their chambers, so the rest is not found.
+#[test]
+fn one_part_of_a_large_set_turns() {
+    let p = planned(&twist_lock_over_dice(4));
+    assert!(kinds(&p).contains(&"screw") && p.steps.iter().all(|s| s.parts == ["key"]), "{p:#?}");
+    assert_eq!(p.steps.last().map(|s| s.stays.len()), Some(25));
+}
+
+#[test]
+fn three_of_a_large_set_move_at_once() {
+    let p = planned(&ring_beside_dice(4));
+    assert!(kinds(&p).contains(&"several"), "{p:#?}");
+    let of_ring = |id: &String| !id.starts_with("die") && id != "case";
+    assert!(p.steps.iter().all(|s| s.parts.iter().all(of_ring)), "{p:#?}");
 }
 
 #[test]

@@ -2,7 +2,8 @@
 
 use super::build::{assembly, cuboid, prism, v};
 use super::{Assembly, Made, Mobility, Patch};
-use glam::{DQuat, DVec3};
+use glam::{DAffine3, DQuat, DVec3};
+use weavelock::assembly::PartIx;
 use weavelock::solid::Cell;
 
 /// A box whose lid has a slot along y, and a bar in it that lies along x under the lid: it leaves only after a quarter
@@ -26,6 +27,41 @@ pub fn twist_lock(lip: f64) -> Made {
     }
     let key = vec![cuboid([-2., -0.5, 1.], [2., 0.5, 2.]), cuboid([-0.4, -0.4, 2.], [0.4, 0.4, 5.])];
     assembly(vec![("case", case), ("key", key)])
+}
+
+/// The twist lock on a case with chambers for dice, six in a row, which fit them on all sides.
+pub fn twist_lock_over_dice(rows: usize) -> Made {
+    let lock = twist_lock(0.0).0;
+    over_dice(rows, lock.cells(PartIx(0)), vec![("key", lock.cells(PartIx(1)))])
+}
+
+/// The ring of three, on its own beside a case with dice.
+pub fn ring_beside_dice(rows: usize) -> Made {
+    let ring = ring_of_three().0;
+    let aside =
+        |p| ring.cells(p).iter().map(|c| c.moved(&DAffine3::from_translation(v(0., 20., 0.)))).collect();
+    let parts = ring.parts.iter().zip(ring.ids()).map(|(part, p)| (part.id.as_str(), aside(p)));
+    over_dice(rows, vec![cuboid([-3., -3., 0.], [3., 3., 1.])], parts.collect())
+}
+
+fn over_dice(rows: usize, mut case: Vec<Cell>, others: Vec<(&str, Vec<Cell>)>) -> Made {
+    let mut dice = Vec::new();
+    for row in 0..rows {
+        let z = -2.0 * (row as f64 + 1.0);
+        case.push(cuboid([-3., -3., z + 1.], [3., 3., z + 2.]));
+        case.push(cuboid([-3., 1., z], [3., 3., z + 1.]));
+        case.push(cuboid([-3., -3., z], [3., 0., z + 1.]));
+        for column in 0..6 {
+            let x = column as f64 - 3.0;
+            let between = |lo: f64, hi: f64| cuboid([x + lo, 0., z], [x + hi, 1., z + 1.]);
+            case.extend([between(0.0, 0.2), between(0.8, 1.0)]);
+            dice.push((format!("die-{row}-{column}"), vec![between(0.2, 0.8)]));
+        }
+    }
+    let low = -2.0 * rows as f64;
+    case.push(cuboid([-3., -3., low - 1.], [3., 3., low]));
+    let dice = dice.iter().map(|(id, cells): &(String, Vec<Cell>)| (id.as_str(), cells.clone()));
+    assembly([("case", case)].into_iter().chain(others).chain(dice).collect())
 }
 
 /// Advance of the thread for each turn, and blocks for each turn of its ridge.

@@ -7,8 +7,8 @@ use glam::DVec3;
 use std::path::Path;
 use std::process::{Command, Output};
 use weavelock::assembly::PartIx;
-use weavelock::sequence::Plan;
 use weavelock::sequence::wanted::{Ask, Chosen, Preferred, Rest, Table, Wish, prefer};
+use weavelock::sequence::{Motions, Plan, plan_by};
 use weavelock::verify::plan::{Checked, check};
 use weavelock::watch::Watch;
 
@@ -70,6 +70,55 @@ fn a_beam_rests_on_two_posts_and_not_on_one() {
     let bench = Ask { table: Table::None, ..ask(&[]) };
     let (_, found) = preferred(&two, &bench);
     assert!(found.judged.count(Wish::Air) > Some(0), "the second post stands on nothing");
+}
+
+/// A plate with a tower near one corner, on three posts that lie farthest out; only a fourth one, between two of those and
+/// farthest along no axis, holds the tower up.
+#[test]
+fn a_corner_that_lies_farthest_along_no_axis_bears_what_only_it_can() {
+    let post = |x: f64, y: f64| cuboid([x, y, 1.], [x + 0.2, y + 0.2, 2.]);
+    let base = || vec![cuboid([0., 0., 0.], [10., 10., 1.]), post(0., 0.), post(9.8, 4.), post(4., 9.8)];
+    let top = || vec![cuboid([0., 0., 2.], [10., 10., 2.1]), cuboid([7., 7., 2.1], [9., 9., 22.1])];
+    let three = assembly(vec![("base", base()), ("top", top())]);
+    let (_, found) = preferred(&three, &ask(&[]));
+    assert!(matches!(found.judged.rests[..], [Rest::Held { .. }]), "{:?}", found.judged.rests);
+    let four = [base(), vec![post(9., 9.)]].concat();
+    let (_, found) = preferred(&assembly(vec![("base", four), ("top", top())]), &ask(&[]));
+    assert_eq!(found.judged.rests, [Rest::Rests]);
+}
+
+/// A lid that is first shifted in its case and then lifted rests in its place; the case, too, whatever moves within.
+#[test]
+fn what_moves_within_a_set_first_is_judged_at_its_place() {
+    let case = vec![
+        cuboid([0., 0., 0.], [4., 2., 1.]),
+        cuboid([0., 0., 1.], [1., 2., 2.]),
+        cuboid([0., 0., 2.], [2., 2., 3.]),
+        cuboid([3., 0., 1.], [4., 2., 3.]),
+        cuboid([1., -1., 0.], [3., 0., 3.]),
+        cuboid([1., 2., 0.], [3., 3., 3.]),
+    ];
+    let made = held(assembly(vec![("case", case), ("bolt", vec![cuboid([1., 0., 1.], [2., 2., 2.])])]), 0);
+    let all: Vec<PartIx> = made.0.ids().collect();
+    let mut plan = plan_by(&made.0, &all, &made.1, Motions::Any, |_| None::<()>).expect("sane parts");
+    let found = prefer(&made.0, &made.1, &mut plan, &ask(&[]), false, &Watch::default());
+    assert_eq!(plan.steps.len(), 2, "to the side, then up: {plan:#?}");
+    assert_eq!(found.judged.rests, [Rest::Rests, Rest::Undecided]);
+}
+
+/// Sixty-four pieces that touch at a hundred thousand corners: each set is decided.
+#[test]
+#[ignore = "ten seconds"]
+fn how_woven_swatches_rest_is_decided() {
+    let joined = crate::support::joined(&crate::support::woven(
+        [1, 1, 1],
+        8,
+        "[swatch]\nwefts = 8\nwarps = 8\ncut = \"tiles\"\nrepeat = 1\n",
+    ));
+    let made = (joined.assembly, joined.patches);
+    let mut plan = planned(&made);
+    let found = prefer(&made.0, &made.1, &mut plan, &ask(&[]), false, &Watch::default());
+    assert_eq!((found.judged.rests.len(), found.judged.rests.contains(&Rest::Undecided)), (63, false));
 }
 
 /// A contact on its side alone bears no weight: hands lift the shelf, which is one of three units of volume, at its middle.

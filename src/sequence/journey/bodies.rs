@@ -4,6 +4,7 @@
 
 use crate::assembly::{Assembly, PartIx};
 use glam::{DAffine3, DVec3};
+use std::collections::BTreeSet;
 
 /// A convex cell at the part's place in the assembly.
 #[derive(Clone, Debug)]
@@ -64,6 +65,12 @@ impl Bodies {
     /// The part's cells in its pose.
     pub fn placed(&self, part: usize, pose: &DAffine3) -> Vec<Body> {
         self.cells[part].iter().map(|c| c.moved(pose)).collect()
+    }
+
+    /// The same parts, of which only these places may move.
+    pub fn moving(&self, places: &BTreeSet<usize>) -> Bodies {
+        let fixed = (0..self.parts.len()).map(|k| self.fixed[k] || !places.contains(&k)).collect();
+        Bodies { fixed, ..self.clone() }
     }
 
     pub fn movable(&self) -> impl Iterator<Item = usize> + '_ {

@@ -107,7 +107,8 @@ impl Follow<'_> {
         work: &mut Work,
     ) -> Option<Vec<Twist>> {
         // All rows are looked at in some rounds, the few that may bind are solved for.
-        work.spent += rows.len() + (rows.len().min(SOLVED_WHOLE) + 12 * at.len()) * 6 * at.len();
+        let movable = self.bodies.movable().count();
+        work.spent += rows.len() + (rows.len().min(SOLVED_WHOLE) + 12 * movable) * 6 * movable;
         work.programs += 1;
         nearest(self.bodies, at, rows, wish, step, room)
     }

@@ -7,6 +7,7 @@
 mod bodies;
 mod flush;
 mod follow;
+mod movers;
 mod path;
 mod program;
 mod straight;
@@ -22,13 +23,10 @@ use crate::watch::{All, Stage, Watch};
 use bodies::{Bodies, Poses};
 use follow::{Distance, Follow};
 use glam::{DAffine3, DQuat, DVec3};
+use movers::Movers;
 use path::{Passes, passes, paths};
 use std::collections::{BTreeSet, VecDeque};
 pub use wishes::frame;
-
-/// Work of one search, in products of rows and unknowns of its programs, and pairs of cells; half of it may go to straight
-/// moves.
-const MOST_SPENT: usize = 20_000_000;
 
 /// States of straight moves, and of all motions.
 const MOST_STRAIGHT: usize = 400;
@@ -40,9 +38,6 @@ const STARTS_OF_PATH: usize = 4;
 /// How much finer states are told apart for a look at their ways out than for starting from them.
 const FINER: f64 = 32.0;
 
-/// Parts that come near what is asked: with more, no search is made.
-const MOST_PARTS: usize = 24;
-
 /// Distances kept from walls, as shares of the smallest lever: none for what fits exactly, a little where there is room.
 const DISTANCES: [Distance; 2] = [Distance(0.0), Distance(1.0 / 128.0)];
 
@@ -52,11 +47,17 @@ pub struct Work {
     pub states: usize,
     pub programs: usize,
     spent: usize,
+    /// What may be spent; half of it may go to straight moves.
+    most: usize,
 }
 
 impl Work {
     fn is_spent(&self) -> bool {
-        self.spent >= MOST_SPENT
+        self.spent >= self.most
+    }
+
+    fn is_half_spent(&self) -> bool {
+        self.spent >= self.most / 2
     }
 }
 
@@ -86,6 +87,15 @@ pub struct Reached {
     pub turn: f64,
 }
 
+impl Reached {
+    fn farther(&mut self, other: &Reached) {
+        if other.shift.length() > self.shift.length() {
+            self.shift = other.shift;
+        }
+        self.turn = self.turn.max(other.turn);
+    }
+}
+
 pub struct Journey {
     pub exit: Option<Exit>,
     pub reached: Vec<Reached>,
@@ -94,30 +104,43 @@ pub struct Journey {
 
 /// Looks for a way out of the set, straight moves first.
 pub fn journey(field: &Field, set: &Set) -> Journey {
-    let (asm, patches, touch) = (field.asm, field.patches, field.touch);
     let parts: Vec<PartIx> = set.iter().copied().collect();
-    let bodies = Bodies::of(asm, &parts);
-    let reached = parts.iter().map(|&part| Reached { part, shift: DVec3::ZERO, turn: 0.0 }).collect();
+    let frame = wishes::frame(field.patches, set);
+    let mut all = Journey { exit: None, reached: at_home(&parts), work: Work::default() };
+    for movers in movers::searches(field.asm, field.patches, Bodies::of(field.asm, &parts)) {
+        let found = search(field, &frame, &movers);
+        all.work.states += found.work.states;
+        all.work.programs += found.work.programs;
+        all.reached.iter_mut().zip(&found.reached).for_each(|(r, f)| r.farther(f));
+        if found.exit.is_some() || field.watch.is_stopped() {
+            return Journey { exit: found.exit, ..all };
+        }
+    }
+    all
+}
+
+fn at_home(parts: &[PartIx]) -> Vec<Reached> {
+    parts.iter().map(|&part| Reached { part, shift: DVec3::ZERO, turn: 0.0 }).collect()
+}
+
+fn search(field: &Field, frame: &[DVec3], movers: &Movers) -> Journey {
     let mut search = Search {
-        asm,
-        bodies: &bodies,
-        touch,
+        asm: field.asm,
+        patches: field.patches,
+        bodies: &movers.bodies,
+        touch: field.touch,
         nodes: vec![],
         seen: BTreeSet::new(),
-        reached,
-        work: Work::default(),
+        reached: at_home(&movers.bodies.parts),
+        work: Work { most: movers.most, ..Work::default() },
         watch: &field.watch,
     };
-    if parts.len() > MOST_PARTS {
-        return Journey { exit: None, reached: search.reached, work: search.work };
-    }
-    let frame = wishes::frame(patches, set);
     let begin = |what, most: usize| field.watch.stage(what, "poses", All::AtMost(most as u64));
     let straight = begin("moves that stop half way", MOST_STRAIGHT);
-    let exit = search.straight(&frame, &straight);
+    let exit = search.straight(frame, &straight);
     drop(straight);
     let turning = begin("turns and joint motions", MOST_STATES);
-    let exit = exit.or_else(|| search.turning(&frame, patches, &turning));
+    let exit = exit.or_else(|| search.turning(frame, &turning));
     Journey { exit, reached: search.reached, work: search.work }
 }
 
@@ -131,6 +154,7 @@ struct Node {
 
 struct Search<'a> {
     asm: &'a Assembly,
+    patches: &'a [Patch],
     bodies: &'a Bodies,
     touch: Touch,
     nodes: Vec<Node>,
@@ -159,7 +183,7 @@ impl Search<'_> {
         while let Some(at) = open.pop_front() {
             for poses in self.after_slides(at, frame) {
                 stage.reach(self.nodes.len());
-                if self.nodes.len() >= MOST_STRAIGHT || self.work.spent >= MOST_SPENT / 2 {
+                if self.nodes.len() >= MOST_STRAIGHT || self.work.is_half_spent() {
                     return None;
                 }
                 if self.watch.is_stopped() {
@@ -192,7 +216,7 @@ impl Search<'_> {
         let all = self.all();
         let mut out = Vec::new();
         for group in self.groups(&patches) {
-            if self.work.spent >= MOST_SPENT / 2 || self.watch.is_stopped() {
+            if self.work.is_half_spent() || self.watch.is_stopped() {
                 break;
             }
             let moving: Set = group.iter().map(|&k| self.bodies.parts[k]).collect();
@@ -231,15 +255,15 @@ impl Search<'_> {
     }
 
     /// All motions: straight ones and wishes that are followed.
-    fn turning(&mut self, frame: &[DVec3], patches: &[Patch], stage: &Stage) -> Option<Exit> {
+    fn turning(&mut self, frame: &[DVec3], stage: &Stage) -> Option<Exit> {
         let grain = self.bodies.movable().map(|k| self.bodies.lever[k]).fold(f64::INFINITY, f64::min) / 32.0;
         // Its own half, however far the last straight state went over the other.
-        self.work.spent = self.work.spent.min(MOST_SPENT / 2);
+        self.work.spent = self.work.spent.min(self.work.most / 2);
         let mut open = self.begin();
         self.is_new(&self.bodies.home(), grain);
         while let Some(at) = open.pop_front() {
             let poses = self.nodes[at].poses.clone();
-            let first = if at == 0 { wishes::free(self.asm, self.bodies, patches) } else { None };
+            let first = if at == 0 { wishes::free(self.asm, self.bodies, self.patches) } else { None };
             let wishes = first.into_iter().chain(wishes::single(self.bodies, frame));
             for (wish, distance) in wishes.flat_map(|w| DISTANCES.map(|d| (w.clone(), d))) {
                 stage.reach(self.nodes.len());
@@ -299,16 +323,19 @@ impl Search<'_> {
         self.bodies.parts.iter().copied().collect()
     }
 
-    /// The assembly with its parts in these poses, and its flush contacts.
+    /// The assembly with its parts in these poses, and its flush contacts: those of parts that may not move are as before.
     fn standing(&self, poses: &Poses) -> (Assembly, Vec<Patch>) {
         let mut asm = self.asm.clone();
         for (p, pose) in self.bodies.parts.iter().zip(poses) {
             asm.parts[p.at()].pose = *pose * asm.parts[p.at()].pose;
         }
         let placed: Vec<_> = poses.iter().enumerate().map(|(k, pose)| self.bodies.placed(k, pose)).collect();
-        let mut patches = Vec::new();
+        let fixed =
+            |p: PartIx| self.bodies.parts.iter().position(|&q| q == p).is_some_and(|k| self.bodies.fixed[k]);
+        let mut patches: Vec<Patch> =
+            self.patches.iter().filter(|c| fixed(c.a) && fixed(c.b)).cloned().collect();
         for a in 0..placed.len() {
-            for b in a + 1..placed.len() {
+            for b in (a + 1..placed.len()).filter(|&b| !(self.bodies.fixed[a] && self.bodies.fixed[b])) {
                 let (x, y) = ((self.bodies.parts[a], &placed[a][..]), (self.bodies.parts[b], &placed[b][..]));
                 patches.extend(flush::flush(x, y, self.touch.depth()));
             }
@@ -329,11 +356,9 @@ impl Search<'_> {
     fn note(&mut self, poses: &Poses) {
         for ((pose, c), r) in poses.iter().zip(&self.bodies.centre).zip(&mut self.reached) {
             let shift = pose.transform_point3(*c) - *c;
-            if shift.length() > r.shift.length() {
-                r.shift = shift;
-            }
             let angle = DQuat::from_mat3(&pose.matrix3).normalize().to_axis_angle().1;
-            r.turn = r.turn.max(angle.min(std::f64::consts::TAU - angle));
+            let turn = angle.min(std::f64::consts::TAU - angle);
+            r.farther(&Reached { shift, turn, ..*r });
         }
     }
 

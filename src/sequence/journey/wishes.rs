@@ -34,7 +34,7 @@ pub fn frame(patches: &[Patch], set: &Set) -> Vec<DVec3> {
     vec![z, -z, x, -x, y, -y]
 }
 
-/// What the first-order verdict lets start, if the set is free by it.
+/// What the first-order verdict lets start of those that may move, if the set is free by it.
 pub fn free(asm: &Assembly, bodies: &Bodies, patches: &[Patch]) -> Option<Vec<Twist>> {
     let Verdict::Free(motion) = check_some(asm, patches, &bodies.parts) else { return None };
     let of = |k: usize| {
@@ -46,10 +46,11 @@ pub fn free(asm: &Assembly, bodies: &Bodies, patches: &[Patch]) -> Option<Vec<Tw
     };
     let all: Vec<Twist> = (0..bodies.parts.len()).map(of).collect();
     let fixed = bodies.fixed.iter().position(|f| *f)?;
-    Some(scaled(
-        bodies,
-        all.iter().enumerate().map(|(k, t)| seen_from(bodies, *t, k, all[fixed], fixed)).collect(),
-    ))
+    let seen = |(k, t): (usize, &Twist)| match bodies.fixed[k] {
+        true => Twist::default(),
+        false => seen_from(bodies, *t, k, all[fixed], fixed),
+    };
+    scaled(bodies, all.iter().enumerate().map(seen).collect())
 }
 
 /// The motion of part k less what the fixed part does.
@@ -58,14 +59,12 @@ fn seen_from(bodies: &Bodies, t: Twist, k: usize, fixed: Twist, at: usize) -> Tw
     Twist { shift: t.shift - drag, turn: t.turn - fixed.turn }
 }
 
-/// So that the largest shift, and turn times lever, is 1.
-fn scaled(bodies: &Bodies, wish: Vec<Twist>) -> Vec<Twist> {
+/// So that the largest shift, and turn times lever, is 1; None where nothing moves.
+fn scaled(bodies: &Bodies, wish: Vec<Twist>) -> Option<Vec<Twist>> {
     let size = |(t, l): (&Twist, &f64)| t.shift.length().max(t.turn.length() * l);
     let most = wish.iter().zip(&bodies.lever).map(size).fold(0.0, f64::max);
-    if most == 0.0 {
-        return wish;
-    }
-    wish.into_iter().map(|t| Twist { shift: t.shift / most, turn: t.turn / most }).collect()
+    let unit = |t: Twist| Twist { shift: t.shift / most, turn: t.turn / most };
+    (most > 0.0).then(|| wish.into_iter().map(unit).collect())
 }
 
 /// Shifts and turns of each part that may move, the others asked to stay (they may be pushed).

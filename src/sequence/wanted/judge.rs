@@ -1,7 +1,7 @@
 //! Takes steps of a plan; counts what each wish asks about.
 //!
 //! Rest is judged for every set as it stands when a part or group has just been put to it, at its place in the whole:
-//! parts under way, and sets after a motion within them, are not judged.
+//! parts under way, and sets with a part that a motion within a set has taken from its place, are not judged.
 
 use super::super::answer::Step;
 use super::super::field::Set;
@@ -100,22 +100,34 @@ pub fn moves(shop: &Shop, steps: &[Step]) -> Judged {
 
 /// How each set rests on its table, its held parts, or its first part.
 fn rests(shop: &Shop, steps: &[Step]) -> Vec<Rest> {
-    let inside = steps.iter().any(|s| s.ends == Ends::Inside);
     let floors = floors(shop, steps);
+    let elsewhere = elsewhere(shop, steps);
     let watch = &shop.field.watch;
     let stage = watch.stage("what rests", "steps", All::Just(steps.len() as u64));
     let one = |(k, s): (usize, &Step)| {
-        if inside || watch.is_stopped() {
-            return Rest::Undecided;
-        }
         let (mut set, stays) = (shop.set(&s.parts), shop.set(&s.stays));
         set.extend(&stays);
+        if watch.is_stopped() || !set.is_disjoint(&elsewhere[k]) {
+            return Rest::Undecided;
+        }
         let rest = judged(shop, &set, floors[k], first_placed(shop, stays, &steps[k + 1..]));
         stage.add(1);
         rest
     };
     let each: Vec<(usize, &Step)> = steps.iter().enumerate().collect();
     each.into_par_iter().map(one).collect()
+}
+
+/// For each step, the parts that motions within a set have taken from their places before it.
+fn elsewhere(shop: &Shop, steps: &[Step]) -> Vec<Set> {
+    let gone = |moved: &mut Set, s: &Step| {
+        let before = moved.clone();
+        if s.ends == Ends::Inside {
+            moved.extend(shop.set(&s.parts));
+        }
+        Some(before)
+    };
+    steps.iter().scan(Set::new(), gone).collect()
 }
 
 /// The height of the table for each step: what stays keeps its place, what is built apart gets a table of its own.

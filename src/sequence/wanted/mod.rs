@@ -91,7 +91,7 @@ pub struct Preferred {
     pub alone: Vec<Option<usize>>,
 }
 
-/// Reorders the steps of a plan; `asm` as planned (with its clearance), `patches` as the parts touch.
+/// Reorders the steps of a plan, and marks it where the user stopped that; `asm` as planned (with its clearance), `patches` as the parts touch.
 pub fn prefer<C>(
     asm: &Assembly,
     patches: &[Patch],
@@ -112,6 +112,7 @@ pub fn prefer<C>(
         let found = if wish == Wish::Air { judge(&shop, &found) } else { judge::moves(&shop, &found) };
         Some(found.count(wish)?.min(judged.count(wish)?).min(as_found.count(wish)?))
     });
+    plan.stopped |= watch.is_stopped();
     let better = judged.key(&ask.ranked) < as_found.key(&ask.ranked);
     if better {
         plan.steps = steps;

@@ -3,7 +3,9 @@
 //! Statics of rigid parts of one density: contact forces that push, without friction, balance the weight of every part
 //! (a linear program over the corners of the contact patches, clarabel). `Rests` means that such forces exist; not that
 //! the rest is stable against a knock. With friction more would rest. Where hands must help, they may give each part any
-//! force and moment; the least sum of these is found, the lower of parts that stand on each other first.
+//! force and moment; the least sum of these is found, the lower of parts that stand on each other first. The program
+//! begins with few corners and takes in others by their prices (column generation; Dantzig and Wolfe 1960) until none of
+//! all corners would make it better.
 
 use crate::assembly::{Assembly, PartIx};
 use crate::contact::Patch;
@@ -12,13 +14,10 @@ use crate::solid::Solid;
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{DefaultSettings, DefaultSolver, IPSolver, NonnegativeConeT, SolverStatus, ZeroConeT};
 use glam::DVec3;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Share of all weight below which hands bear nothing: what the solver promises (1e-8), with room for many rows.
 const SOLVED_TO: f64 = 1e-6;
-
-/// Contact corners of one program; a set with more is not judged.
-const MOST_CORNERS: usize = 20_000;
 
 /// By how much a hand on the highest part costs more than on the lowest: little, so that the least sum stays nearly that.
 const HIGHER_COSTS: f64 = 1.0 / 64.0;
@@ -37,6 +36,10 @@ pub enum Rest {
     },
     Undecided,
 }
+
+/// A corner is taken in where its push would pay at this multiple of `PUSH_COSTS`: so the answer is the best one for pushes
+/// that cost something between one and this, and prices wrong by what the solver promises call nobody.
+const PAYS_AT: f64 = 1.5;
 
 /// A set of parts and what bears it.
 pub struct Pile<'p> {
@@ -58,15 +61,21 @@ struct Push {
     point: DVec3,
 }
 
-/// Few corners first: forces at some of them are forces.
 pub fn rest(pile: &Pile) -> Rest {
+    let free: Vec<PartIx> = pile.set.iter().copied().filter(|p| !pile.fixed.contains(p)).collect();
+    if free.is_empty() {
+        return Rest::Rests;
+    }
+    let statics = Statics::new(pile, &free);
     let all = pushes(pile);
-    let few = farthest(&all, pile);
-    match solved(pile, &few) {
-        Some(Rest::Rests) => Rest::Rests,
-        _ if all.len() > MOST_CORNERS => Rest::Undecided,
-        found if few.len() == all.len() => found.unwrap_or(Rest::Undecided),
-        _ => solved(pile, &all.iter().collect::<Vec<_>>()).unwrap_or(Rest::Undecided),
+    let mut chosen = farthest(&all, pile);
+    loop {
+        let Some(balance) = statics.solved(&all, &chosen, pile.up) else { return Rest::Undecided };
+        let more = statics.called(&all, &chosen, &balance.prices);
+        if balance.rest == Rest::Rests || more.is_empty() {
+            return balance.rest;
+        }
+        chosen.extend(more);
     }
 }
 
@@ -88,8 +97,8 @@ fn pushes(pile: &Pile) -> Vec<Push> {
     all
 }
 
-/// Of each pair, the corners that lie farthest along the axes of force and moment.
-fn farthest<'p>(all: &'p [Push], pile: &Pile) -> Vec<&'p Push> {
+/// Of each pair, the corners that lie farthest along the axes of force and moment: which of all.
+fn farthest(all: &[Push], pile: &Pile) -> Vec<usize> {
     type Farthest = BTreeMap<([Option<PartIx>; 2], usize), (f64, usize)>;
     let mut best = Farthest::new();
     let about = pile.set.iter().map(|&p| pile.asm.centre(p)).sum::<DVec3>() / pile.set.len().max(1) as f64;
@@ -106,35 +115,19 @@ fn farthest<'p>(all: &'p [Push], pile: &Pile) -> Vec<&'p Push> {
     let mut chosen: Vec<usize> = best.into_values().map(|(_, k)| k).collect();
     chosen.sort_unstable();
     chosen.dedup();
-    chosen.into_iter().map(|k| &all[k]).collect()
+    chosen
 }
 
-/// None where the program was not solved.
-fn solved(pile: &Pile, pushes: &[&Push]) -> Option<Rest> {
-    let free: Vec<PartIx> = pile.set.iter().copied().filter(|p| !pile.fixed.contains(p)).collect();
-    if free.is_empty() {
-        return Some(Rest::Rests);
-    }
-    let statics = Statics::new(pile, &free);
-    let (matrix, limits) = statics.balance(pushes, pile.up);
-    let cost = statics.cost(pushes.len(), pile.up);
-    let settings = DefaultSettings { verbose: false, ..DefaultSettings::default() };
-    let cones = [ZeroConeT(statics.rows()), NonnegativeConeT(cost.len())];
-    let none = CscMatrix::zeros((cost.len(), cost.len()));
-    let mut solver = DefaultSolver::new(&none, &cost, &matrix, &limits, &cones, settings).ok()?;
-    solver.solve();
-    if !matches!(solver.solution.status, SolverStatus::Solved) {
-        return None;
-    }
-    let hands = &solver.solution.x[pushes.len()..];
-    let of = |k: usize| hands[12 * k..12 * (k + 1)].iter().map(|h| h.max(0.0)).sum::<f64>();
-    let parts: Vec<PartIx> = (0..free.len()).filter(|&k| of(k) > SOLVED_TO).map(|k| free[k]).collect();
-    let share = (0..free.len()).map(of).sum();
-    Some(if parts.is_empty() { Rest::Rests } else { Rest::Held { parts, share } })
+/// A program's answer.
+struct Balance {
+    rest: Rest,
+    /// Of each row of balance: what the whole would cost more if it asked for one more of that force or moment.
+    prices: Vec<f64>,
 }
 
 /// The parts that must be borne, and what they weigh.
 struct Statics<'f> {
+    /// Ascending.
     free: &'f [PartIx],
     /// Volume and centre of mass.
     masses: Vec<(f64, DVec3)>,
@@ -153,26 +146,68 @@ impl<'f> Statics<'f> {
         6 * self.free.len()
     }
 
+    /// None where the program was not solved.
+    fn solved(&self, all: &[Push], chosen: &[usize], up: DVec3) -> Option<Balance> {
+        let (matrix, limits) = self.balance(all, chosen, up);
+        let cost = self.cost(chosen.len(), up);
+        let settings = DefaultSettings { verbose: false, ..DefaultSettings::default() };
+        let cones = [ZeroConeT(self.rows()), NonnegativeConeT(cost.len())];
+        let none = CscMatrix::zeros((cost.len(), cost.len()));
+        let mut solver = DefaultSolver::new(&none, &cost, &matrix, &limits, &cones, settings).ok()?;
+        solver.solve();
+        if !matches!(solver.solution.status, SolverStatus::Solved) {
+            return None;
+        }
+        let hands = &solver.solution.x[chosen.len()..];
+        let of = |k: usize| hands[12 * k..12 * (k + 1)].iter().map(|h| h.max(0.0)).sum::<f64>();
+        let free = self.free;
+        let parts: Vec<PartIx> = (0..free.len()).filter(|&k| of(k) > SOLVED_TO).map(|k| free[k]).collect();
+        let share = (0..free.len()).map(of).sum();
+        let rest = if parts.is_empty() { Rest::Rests } else { Rest::Held { parts, share } };
+        Some(Balance { rest, prices: solver.solution.z[..self.rows()].iter().map(|z| -z).collect() })
+    }
+
+    /// Of each pair of parts, the corner that is not in the program and whose push would pay most, if any pays.
+    fn called(&self, all: &[Push], chosen: &[usize], prices: &[f64]) -> Vec<usize> {
+        let known: BTreeSet<usize> = chosen.iter().copied().collect();
+        let mut best: BTreeMap<[Option<PartIx>; 2], (f64, usize)> = BTreeMap::new();
+        for (k, push) in all.iter().enumerate().filter(|(k, _)| !known.contains(k)) {
+            let pays: f64 = self.column(push).map(|(row, v)| v * prices[row]).sum();
+            let most = best.entry(push.on).or_insert((PAYS_AT * PUSH_COSTS, k));
+            if pays > most.0 {
+                *most = (pays, k);
+            }
+        }
+        best.into_values().filter(|(pays, _)| *pays > PAYS_AT * PUSH_COSTS).map(|(_, k)| k).collect()
+    }
+
+    /// What a push of 1 does to the parts that must be borne: rows of balance and how much.
+    fn column<'c>(&'c self, push: &'c Push) -> impl Iterator<Item = (usize, f64)> + 'c {
+        push.on.iter().zip([-1.0, 1.0]).flat_map(move |(part, sign)| {
+            let k = part.and_then(|p| self.free.binary_search(&p).ok());
+            k.into_iter().flat_map(move |k| {
+                let moment = (push.point - self.masses[k].1).cross(push.normal) / self.lever;
+                let six = push.normal.to_array().into_iter().chain(moment.to_array());
+                six.enumerate().map(move |(d, v)| (6 * k + d, sign * v))
+            })
+        })
+    }
+
     /// Rows of balance (all weight is 1), then of unknowns that are at least 0: pushes, and hands both ways on each row.
-    fn balance(&self, pushes: &[&Push], up: DVec3) -> (CscMatrix, Vec<f64>) {
+    fn balance(&self, all: &[Push], chosen: &[usize], up: DVec3) -> (CscMatrix, Vec<f64>) {
         let (mut is, mut js, mut vs) = (Vec::new(), Vec::new(), Vec::new());
         let mut put = |i: usize, j: usize, v: f64| {
             is.push(i);
             js.push(j);
             vs.push(v);
         };
-        for (j, push) in pushes.iter().enumerate() {
-            for (part, sign) in push.on.iter().zip([-1.0, 1.0]) {
-                let Some(k) = part.and_then(|p| self.free.iter().position(|&q| q == p)) else { continue };
-                let moment = (push.point - self.masses[k].1).cross(push.normal) / self.lever;
-                let six = push.normal.to_array().into_iter().chain(moment.to_array());
-                six.enumerate().for_each(|(d, v)| put(6 * k + d, j, sign * v));
-            }
+        for (j, &push) in chosen.iter().enumerate() {
+            self.column(&all[push]).for_each(|(i, v)| put(i, j, v));
         }
-        let (rows, unknowns) = (self.rows(), pushes.len() + 2 * self.rows());
+        let (rows, unknowns) = (self.rows(), chosen.len() + 2 * self.rows());
         for i in 0..rows {
-            put(i, pushes.len() + 2 * i, 1.0);
-            put(i, pushes.len() + 2 * i + 1, -1.0);
+            put(i, chosen.len() + 2 * i, 1.0);
+            put(i, chosen.len() + 2 * i + 1, -1.0);
         }
         (0..unknowns).for_each(|j| put(rows + j, j, -1.0));
         let total: f64 = self.masses.iter().map(|m| m.0).sum();
