@@ -13,7 +13,7 @@ use crate::assembly::PartIx;
 use crate::fault::Fault;
 use crate::report::answer::Certificate;
 use crate::sequence::lattice::answer::Asked;
-use crate::sequence::lattice::{self, NoLattice, apart::written};
+use crate::sequence::lattice::{self, NoLattice, apart::written, moves::MOST_PARTS};
 use crate::sequence::{Outcome, Plan};
 use crate::spec::Subject;
 use crate::spec::puzzle::groups::Groups;
@@ -85,7 +85,13 @@ fn told(puzzle: &Puzzle, unit_mm: f64, asked: &PuzzleArgs) -> Vec<String> {
     let groups = groups.then(|| {
         "the puzzle's groups say which pieces need not be parted: moves along the axes leave them together".to_string()
     });
-    [problem, solution, level, unit, groups].into_iter().flatten().collect()
+    let used = puzzle.solution.iter().flat_map(|s| &s.placements).flatten().count();
+    let many = (used > MOST_PARTS).then(|| {
+        format!(
+            "{used} pieces: a level is counted for up to {MOST_PARTS}, straight moves are searched for more"
+        )
+    });
+    [problem, solution, level, unit, groups, many].into_iter().flatten().collect()
 }
 
 /// Any plan of a search, or why it was not made.
