@@ -3,6 +3,8 @@
 //! Six-piece burrs by their numbers (one more than the sum of the bits of the cubes taken away; Cutler, *A Computer
 //! Analysis of All 6-Piece Burrs*; von Kanel, IBM Research, *Burr puzzles*), with published levels.
 
+mod brute;
+mod groups;
 mod maze;
 
 use crate::support;
@@ -136,7 +138,7 @@ fn published_levels_are_found_again() {
 fn one_way_to_put_loves_dozen_together_takes_twelve_moves() {
     let puzzle = puzzle(&burr([88, 512, 704, 960, 992, 1008], 6));
     let mut levels = Vec::new();
-    let end = voxel::cover::assemblies(&puzzle, 1_000_000, |solution| {
+    let end = voxel::cover::assemblies(&puzzle, 1_000_000_000, |solution| {
         let asm = voxel::assembly("love", &puzzle, &solution, 1.0).expect("it fits");
         let parts: Vec<_> = asm.ids().collect();
         let found = on_lattice(&asm, &parts, Some(1.0), |_| 1, None).expect("on a lattice");
@@ -158,7 +160,7 @@ fn all_ways_to_fill_a_burr_are_found_once() {
     ];
     for (numbers, expected) in counts {
         let (puzzle, mut count) = (puzzle(&burr(numbers, 6)), 0);
-        voxel::cover::assemblies(&puzzle, 1_000_000, |solution| {
+        voxel::cover::assemblies(&puzzle, 1_000_000_000, |solution| {
             assert!(voxel::placed(&puzzle, &solution).is_ok());
             count += 1;
             std::ops::ControlFlow::Continue(())

@@ -8,6 +8,7 @@ mod blocking;
 mod check;
 mod draw;
 mod exported;
+mod filled;
 pub mod flex;
 mod hands;
 mod interlock;

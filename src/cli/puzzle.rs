@@ -5,37 +5,30 @@
 //! the bounds on counted work.
 
 use super::args::PuzzleArgs;
+use super::filled::found;
 use super::load::{Loaded, Placed};
 use super::questions::locked;
 use super::told::Trouble;
 use crate::assembly::PartIx;
-use crate::assembly::voxel;
-use crate::assembly::voxel::cover::{Covered, assemblies_watched};
 use crate::fault::Fault;
 use crate::report::answer::Certificate;
 use crate::sequence::lattice::answer::Asked;
-use crate::sequence::lattice::{self, NoLattice, apart::written, on_lattice_watched};
+use crate::sequence::lattice::{self, NoLattice, apart::written, moves::MOST_PARTS};
 use crate::sequence::{Outcome, Plan};
 use crate::spec::Subject;
+use crate::spec::puzzle::groups::Groups;
 use crate::spec::puzzle::{self, Choice, Puzzle, Solution, text::text};
-use crate::watch::{All, Watch};
-use std::ops::ControlFlow;
+use crate::watch::Watch;
 use std::path::Path;
 
-/// Placements that are tried to fill a result: about half a minute for a puzzle of twenty pieces.
-const MOST_WORK: usize = 3_000_000;
-
-/// Ways to fill the result that are taken apart before the first one is taken.
-const MOST_TRIED: usize = 2_000;
-
-/// Positions looked at for each of them, and for parts that straight moves do not take apart.
+/// Positions looked at for parts that straight moves do not take apart.
 const MOST_STATES: usize = 1_000_000;
 
 /// A puzzle file as asked.
 pub fn loaded(file: &Path, asked: &PuzzleArgs, watch: &Watch) -> Result<Loaded, Trouble> {
     let choice = Choice { problem: asked.problem, solution: asked.solution, unit_mm: asked.unit };
     let mut spec = puzzle::parse(&puzzle::read_text(file)?, file, choice)?;
-    let (name, shown) = (spec.name.clone(), file.display().to_string());
+    let shown = file.display().to_string();
     let Subject::Meshes(meshes) = &mut spec.subject else {
         return Ok(Loaded::new(spec, String::new(), watch));
     };
@@ -43,13 +36,7 @@ pub fn loaded(file: &Path, asked: &PuzzleArgs, watch: &Watch) -> Result<Loaded, 
     let mut remarks = Vec::new();
     if let Some(puzzle) = &mut meshes.puzzle {
         if puzzle.solution.is_none() {
-            let wrong = |(what, hint)| Fault { file: shown, place: None, key: String::new(), what, hint };
-            let (solution, how) = match found(&name, puzzle, watch) {
-                Err(_) if watch.is_stopped() => {
-                    return Err(Trouble::Stopped("while a way to fill the result was searched".into()));
-                }
-                found => found.map_err(wrong)?,
-            };
+            let (solution, how) = solved(puzzle, asked, &shown, watch)?;
             puzzle.solution = Some(solution);
             remarks.push(how);
         }
@@ -58,6 +45,28 @@ pub fn loaded(file: &Path, asked: &PuzzleArgs, watch: &Watch) -> Result<Loaded, 
         return Ok(Loaded { remarks, ..Loaded::new(spec, text, watch) });
     }
     Ok(Loaded::new(spec, String::new(), watch))
+}
+
+/// A way to fill the result, and in words how it was found; `file` names the file in a fault.
+fn solved(
+    puzzle: &Puzzle,
+    asked: &PuzzleArgs,
+    file: &str,
+    watch: &Watch,
+) -> Result<(Solution, String), Trouble> {
+    let (number, of) = puzzle.number;
+    let several = of > 1 && asked.problem.is_none();
+    let which = several.then(|| format!("problem {number} of {of} (--problem asks for another): "));
+    let wrong = |(what, hint): (String, String)| {
+        let what = which.unwrap_or_default() + &what;
+        Fault { file: file.into(), place: None, key: String::new(), what, hint }
+    };
+    match found(puzzle, watch) {
+        Err(_) if watch.is_stopped() => {
+            Err(Trouble::Stopped("while a way to fill the result was searched".into()))
+        }
+        found => Ok(found.map_err(wrong)?),
+    }
 }
 
 /// What was taken where nothing was said.
@@ -73,71 +82,16 @@ fn told(puzzle: &Puzzle, unit_mm: f64, asked: &PuzzleArgs) -> Vec<String> {
     let unit =
         asked.unit.is_none().then(|| format!("one voxel is {unit_mm} mm (--unit \"10 mm\" says otherwise)"));
     let groups = puzzle.problem.pieces.iter().any(|p| !p.groups.is_empty());
-    let groups = groups.then(|| "groups are not used: all pieces are taken apart".to_string());
-    [problem, solution, level, unit, groups].into_iter().flatten().collect()
-}
-
-/// A way to fill the result, and in words how it was found; or a fault and its hint.
-fn found(name: &str, puzzle: &Puzzle, watch: &Watch) -> Result<(Solution, String), (String, String)> {
-    let wanted = puzzle.chosen.0.max(1);
-    let (mut first, mut good, mut tried, mut apart) = (None, None, 0, 0);
-    let stage = watch.stage("filling the result", "ways tried", All::AtMost(MOST_TRIED as u64));
-    let end = assemblies_watched(puzzle, MOST_WORK, watch, |solution| {
-        tried += 1;
-        stage.reach(tried);
-        if comes_apart(name, puzzle, &solution, watch) {
-            apart += 1;
-            if apart == wanted {
-                good = Some(solution);
-                return ControlFlow::Break(());
-            }
-        } else if first.is_none() {
-            first = Some(solution);
-        }
-        if tried < MOST_TRIED && !watch.is_stopped() {
-            ControlFlow::Continue(())
-        } else {
-            ControlFlow::Break(())
-        }
+    let groups = groups.then(|| {
+        "the puzzle's groups say which pieces need not be parted: moves along the axes leave them together".to_string()
     });
-    if let Some(solution) = good {
-        return Ok((
-            solution,
-            format!(
-                "no solution is stated: found here, way {tried} to fill the result, the {wanted}. that comes apart"
-            ),
-        ));
-    }
-    let all = match end {
-        Covered::All => "all",
-        _ if watch.is_stopped() => "those until the user stopped it,",
-        _ => "the first",
-    };
-    match first {
-        Some(solution) if wanted == 1 => Ok((
-            solution,
-            format!(
-                "no solution is stated: of {all} {tried} ways to fill the result none was found to come apart; this is the first"
-            ),
-        )),
-        None if end == Covered::All && tried == 0 => Err((
-            "its pieces do not fill the result in any way".into(),
-            "no solution is stated, and there is none".into(),
-        )),
-        _ => Err((
-            format!(
-                "no solution is stated, and {apart} that come apart were found here among {all} {tried} ways to fill the result"
-            ),
-            "solve the puzzle with BurrTools and save it, or ask for another --solution".into(),
-        )),
-    }
-}
-
-fn comes_apart(name: &str, puzzle: &Puzzle, solution: &Solution, watch: &Watch) -> bool {
-    let Ok(asm) = voxel::assembly(name, puzzle, solution, 1.0) else { return false };
-    let all: Vec<_> = asm.ids().collect();
-    let found = on_lattice_watched(&asm, &all, Some(1.0), |_| 1, Some(MOST_STATES), watch);
-    found.is_ok_and(|f| f.apart.whole.kept().is_empty())
+    let used = puzzle.solution.iter().flat_map(|s| &s.placements).flatten().count();
+    let many = (used > MOST_PARTS).then(|| {
+        format!(
+            "{used} pieces: a level is counted for up to {MOST_PARTS}, straight moves are searched for more"
+        )
+    });
+    [problem, solution, level, unit, groups, many].into_iter().flatten().collect()
 }
 
 /// Any plan of a search, or why it was not made.
@@ -191,6 +145,9 @@ fn on_its_lattice(
         step: weights.is_some().then_some(1.0),
         weight: |p: PartIx| weights.as_ref().and_then(|w| w.get(p.at()).copied()).unwrap_or(1),
         most,
+        groups: puzzle_of(placed)
+            .and_then(Groups::of)
+            .map(|g| g.among(&of.iter().map(|p| p.at()).collect::<Vec<_>>())),
         watch: &placed.watch,
     };
     lattice::answer::plan(&asked, |set| locked(joined, set))

@@ -214,6 +214,7 @@ impl<'a> Search<'a> {
             step: None,
             weight: |_| 1,
             most: Some(MOST_POSITIONS),
+            groups: None,
             watch: &watch,
         };
         let found = lattice::answer::plan(&asked, |_| None);

@@ -140,8 +140,10 @@ fn counted(c: &Counted) -> Vec<(String, String)> {
         };
         fact("stay together", format!("{}: {looked}", k.parts.join(", ")))
     });
+    let together =
+        c.together.iter().map(|set| fact("one group", format!("{}: need not be parted", set.join(", "))));
     let positions = fact("positions", thousands(c.positions));
-    level.chain([fact("moves", c.moves.to_string())]).chain(kept).chain([positions]).collect()
+    level.chain([fact("moves", c.moves.to_string())]).chain(together).chain(kept).chain([positions]).collect()
 }
 
 /// The headline of a plan, and why there is none.

@@ -15,7 +15,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Outcome {
-    /// Every part was separated: the reverse of the steps puts the assembly together.
+    /// Every part was separated, but for sets that a puzzle's groups allow to stay together: the reverse of the steps puts the assembly together.
     Assembled,
     /// A set that stayed together is proven locked: no rigid plan exists, something must bend.
     NeedsFlexible,

@@ -9,6 +9,7 @@ mod dyadic;
 mod field;
 mod flex;
 pub mod follow;
+mod group;
 mod interlock;
 mod mend;
 mod motion;
@@ -56,7 +57,8 @@ pub fn answer(sealed: &Sealed) -> Result<Verified, Faults> {
             Ok(verified(found, format!("the {} verdict and its proofs hold", word(a))))
         }
         Sealed::Plan(a) => {
-            let found = plan(&rebuild(&a.source)?, a);
+            let spec = parsed(&a.source)?;
+            let found = plan(&spec, &contact::join(&spec)?, a);
             Ok(verified(found, "every move and every proof of the plan holds".into()))
         }
         Sealed::Flex(a) => flex::answer(a),
@@ -151,7 +153,7 @@ fn levels(spec: &spec::Spec, a: &CheckAnswer) -> Result<(), String> {
     }
 }
 
-fn plan(joined: &Joined, a: &PlanAnswer) -> Result<Proofs, String> {
+fn plan(spec: &spec::Spec, joined: &Joined, a: &PlanAnswer) -> Result<Proofs, String> {
     let mut proofs = Proofs::new();
     sealed(&a.checksum, &PlanAnswer { checksum: String::new(), ..a.clone() })?;
     same("verb", a.verb.as_str(), "plan")?;
@@ -166,6 +168,7 @@ fn plan(joined: &Joined, a: &PlanAnswer) -> Result<Proofs, String> {
     }
     if let Some(claimed) = &a.plan.counted {
         plan::counted(&a.plan.steps, &a.of, claimed)?;
+        group::allowed(spec, &joined.assembly, claimed)?;
     }
     for stuck in &a.plan.stuck {
         if let Some(lock) = &stuck.lock {

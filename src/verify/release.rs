@@ -2,17 +2,19 @@
 //!
 //! Not checked: that no plan exists at a lower end whose evidence is `not-found` (the answer claims no proof of that).
 
-use super::{Proofs, Verified, locked_alone, plan, rebuild, same, sealed, verified};
-use crate::contact::Joined;
+use super::{Proofs, Verified, locked_alone, parsed, plan, same, sealed, verified};
+use crate::contact::{self, Joined};
 use crate::fault::Faults;
 use crate::report::answer::{BracketAnswer, Evidence, ReleaseAnswer, ReleaseWord};
+use crate::spec::Spec;
 
 pub(super) fn answer(a: &ReleaseAnswer) -> Result<Verified, Faults> {
-    let joined = rebuild(&a.source)?;
-    Ok(verified(release(&joined, a), "every plan at an upper end and every proof holds".into()))
+    let spec = parsed(&a.source)?;
+    let joined = contact::join(&spec)?;
+    Ok(verified(release(&spec, &joined, a), "every plan at an upper end and every proof holds".into()))
 }
 
-fn release(joined: &Joined, a: &ReleaseAnswer) -> Result<Proofs, String> {
+fn release(spec: &Spec, joined: &Joined, a: &ReleaseAnswer) -> Result<Proofs, String> {
     sealed(&a.checksum, &ReleaseAnswer { checksum: String::new(), ..a.clone() })?;
     same("verb", a.verb.as_str(), "release")?;
     let mut proofs = Proofs::new();
@@ -22,7 +24,7 @@ fn release(joined: &Joined, a: &ReleaseAnswer) -> Result<Proofs, String> {
     }
     let mut best = f64::INFINITY;
     for b in &a.brackets {
-        best = best.min(upper_end(joined, b, &mut proofs)?);
+        best = best.min(upper_end(spec, joined, b, &mut proofs)?);
         if b.evidence == Evidence::Locked && a.certificate.is_none() {
             return Err(format!("{}: locked without a proof", b.motions));
         }
@@ -40,7 +42,7 @@ fn release(joined: &Joined, a: &ReleaseAnswer) -> Result<Proofs, String> {
 }
 
 /// The clearance at the upper end, mm; infinite where there is none.
-fn upper_end(joined: &Joined, b: &BracketAnswer, proofs: &mut Proofs) -> Result<f64, String> {
+fn upper_end(spec: &Spec, joined: &Joined, b: &BracketAnswer, proofs: &mut Proofs) -> Result<f64, String> {
     match (&b.plan, b.hi) {
         (None, None) => Ok(f64::INFINITY),
         (Some(found), Some(hi)) => {
@@ -49,7 +51,7 @@ fn upper_end(joined: &Joined, b: &BracketAnswer, proofs: &mut Proofs) -> Result<
             if !found.plan.stuck.is_empty() {
                 return Err(format!("{}: the plan leaves parts together", b.motions));
             }
-            proofs.extend(plan(joined, found)?);
+            proofs.extend(plan(spec, joined, found)?);
             Ok(hi.clearance_mm)
         }
         _ => Err(format!("{}: an upper end and its plan belong together", b.motions)),

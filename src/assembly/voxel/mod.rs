@@ -4,6 +4,7 @@
 //! solids close, their convex cells are boxes on whole numbers. The unit is the edge of a voxel. Not promised: that the
 //! pieces can be put together.
 
+pub mod boxes;
 pub mod cover;
 mod fit;
 mod solid;

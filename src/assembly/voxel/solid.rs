@@ -1,8 +1,9 @@
 //! Takes a shape of voxels; gives its solid: unit squares over shared corners, and boxes as convex cells.
 //!
 //! Where voxels touch along an edge or at a corner only, the surface touches itself there: four squares share the edge,
-//! two each way, as for meshes read from files. Not promised: fewest boxes; they grow along x, then y, then z.
+//! two each way, as for meshes read from files. Not promised: fewest boxes.
 
+use super::boxes::boxes;
 use crate::solid::{Cell, Facet, Solid};
 use crate::spec::puzzle::Shape;
 use glam::DVec3;
@@ -45,30 +46,6 @@ fn square(v: At, axis: usize, side: i32) -> [At; 4] {
     };
     let ring = [corner(0, 0), corner(1, 0), corner(1, 1), corner(0, 1)];
     if side == 1 { ring } else { [ring[0], ring[3], ring[2], ring[1]] }
-}
-
-/// Boxes without a common voxel that hold all of them.
-fn boxes(mut left: BTreeSet<At>) -> Vec<(At, At)> {
-    let mut out = Vec::new();
-    while let Some(&lo) = left.first() {
-        let mut hi = lo.map(|x| x + 1);
-        for axis in 0..3 {
-            while within(lo, hi, axis).all(|v| left.contains(&v)) {
-                hi[axis] += 1;
-            }
-        }
-        let inside: BTreeSet<At> =
-            left.iter().copied().filter(|v| (0..3).all(|k| lo[k] <= v[k] && v[k] < hi[k])).collect();
-        left.retain(|v| !inside.contains(v));
-        out.push((lo, hi));
-    }
-    out
-}
-
-/// The voxels of the next layer of a box along an axis.
-fn within(lo: At, hi: At, axis: usize) -> impl Iterator<Item = At> {
-    let range = move |k: usize| if k == axis { hi[k]..hi[k] + 1 } else { lo[k]..hi[k] };
-    range(0).flat_map(move |x| range(1).flat_map(move |y| range(2).map(move |z| [x, y, z])))
 }
 
 fn cell(lo: At, hi: At) -> Cell {

@@ -11,6 +11,7 @@ use crate::assembly::{Assembly, PartIx};
 use crate::blocking::Touch;
 use crate::sequence::answer::{Order, Outcome, Plan, Searched, Step, Straight, Stuck};
 use crate::sequence::motion::{self, Motion, Shift};
+use crate::spec::puzzle::groups::Groups;
 use crate::watch::Watch;
 use glam::DVec3;
 use schemars::JsonSchema;
@@ -33,6 +34,9 @@ pub struct Counted {
     pub positions: usize,
     /// The lattice's steps along the axes, model units.
     pub lattice_steps: [f64; 3],
+    /// Sets that stay together because the puzzle's groups say that they need not be parted; each is taken as one body.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub together: Vec<Vec<String>>,
     /// What is known of sets that stayed together.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub kept: Vec<KeptAnswer>,
@@ -66,6 +70,8 @@ pub struct Asked<'a, W> {
     pub weight: W,
     /// Positions looked at in all; by default as many as memory holds.
     pub most: Option<usize>,
+    /// Of the parts, in their order.
+    pub groups: Option<Groups>,
     pub watch: &'a Watch,
 }
 
@@ -74,8 +80,8 @@ pub fn plan<C>(
     asked: &Asked<impl Fn(PartIx) -> i32>,
     locked: impl Fn(&[PartIx]) -> Option<C>,
 ) -> Result<Plan<C>, NoLattice> {
-    let found =
-        on_lattice_watched(asked.asm, asked.parts, asked.step, &asked.weight, asked.most, asked.watch)?;
+    let Asked { asm, parts, step, weight, most, groups, watch } = asked;
+    let found = on_lattice_watched(asm, parts, *step, weight, *most, groups.as_ref(), watch)?;
     let stuck: Vec<Stuck<C>> =
         found.apart.whole.kept().into_iter().map(|k| stuck(asked, k, &locked)).collect();
     let outcome = match () {
@@ -115,6 +121,7 @@ fn counted(asked: &Asked<impl Fn(PartIx) -> i32>, found: &OnLattice) -> Counted 
         fewest: if whole.fewest() == Fewest::Proven { Word::Proven } else { Word::NotProven },
         positions: found.apart.states,
         lattice_steps: found.lattice.step.to_array(),
+        together: whole.together().into_iter().map(|set| ids(asked, set)).collect(),
         kept: whole.kept().into_iter().map(kept).collect(),
     }
 }
@@ -203,7 +210,7 @@ impl Taken {
     fn sets(&self) -> usize {
         use super::apart::Fate;
         match &self.fate {
-            Fate::Done => 0,
+            Fate::Done | Fate::Together => 0,
             Fate::Kept(_) => 1,
             Fate::Parted { stayed, left, .. } => 1 + stayed.sets() + left.sets(),
         }

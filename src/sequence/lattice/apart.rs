@@ -1,7 +1,7 @@
 //! Takes parts on a lattice; gives how they come apart: a first set, then each of the two sets in turn, and its level.
 //!
 //! Each count of moves is the fewest for its set from where it stands when it is set apart; the whole need not be the
-//! fewest. A set from which nothing can be parted proves that no translations take the whole apart: other parts only
+//! fewest. Sets that may stay together by a puzzle's groups are not parted. A set from which nothing can be parted proves that no translations take the whole apart: other parts only
 //! stand in the way. The level is written as BurrTools 0.6 writes it (Roever; `disassembly.cpp`): moves until the first
 //! parting, then those of the parts that stayed, then those of the parts that left; a set that needs no more than one
 //! move at a time is left out. Not promised: the fewest moves in all.
@@ -10,6 +10,7 @@ use super::moves::{Mask, Way};
 use super::pairs::around;
 use super::search::{End, Fewest, Looks, Scene, search};
 use super::states::Shift;
+use crate::spec::puzzle::groups::Groups;
 
 /// What becomes of the parts that a move moves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -47,6 +48,8 @@ pub enum Kept {
 pub enum Fate {
     /// One part, or only held ones.
     Done,
+    /// The puzzle's groups say that it need not be parted.
+    Together,
     Kept(Kept),
     Parted {
         steps: Vec<Step>,
@@ -70,16 +73,29 @@ pub struct Apart {
     pub states: usize,
 }
 
-/// Takes the pieces with these indices apart, looking at `most` positions in all.
-pub fn take_apart(scene: &Scene, members: &[usize], most: usize, looks: &Looks) -> Apart {
-    let mut work = Work { scene, left: most, states: 0, looks };
+/// Takes the pieces with these indices apart, looking at `most` positions in all. `groups`: of pieces by their indices.
+pub fn take_apart(
+    scene: &Scene,
+    members: &[usize],
+    most: usize,
+    groups: Option<&Groups>,
+    looks: &Looks,
+) -> Apart {
+    let mut work = Work { scene, groups, left: most, states: 0, looks };
     let start = vec![0; 3 * members.len().saturating_sub(1)];
-    let whole = work.take(members, &start);
+    let mut whole = work.take(members, &start);
+    let kept = whole.kept();
+    let exhausted = kept.iter().all(|k| k.1 == Kept::Exhausted && k.0.len() < members.len());
+    let sets: Vec<Vec<usize>> = kept.into_iter().map(|k| k.0.to_vec()).collect();
+    if exhausted && groups.is_some_and(|g| g.allow(&sets)) {
+        whole.excuse();
+    }
     Apart { whole, states: work.states }
 }
 
 struct Work<'s> {
     scene: &'s Scene,
+    groups: Option<&'s Groups>,
     looks: &'s Looks<'s>,
     left: usize,
     states: usize,
@@ -113,6 +129,9 @@ impl Work<'_> {
 
     /// A set of the members, from where it stands in this state.
     fn take_some(&mut self, members: &[usize], state: &[Shift], some: &[usize]) -> Taken {
+        if some.len() > 1 && self.groups.is_some_and(|g| g.is_one(some)) {
+            return Taken { members: some.to_vec(), fate: Fate::Together };
+        }
         match about_first(members, state, some) {
             Some(start) => self.take(some, &start),
             None => Taken { members: some.to_vec(), fate: Fate::Kept(Kept::GaveUp { moves: 0 }) },
@@ -204,9 +223,29 @@ impl Taken {
     /// Sets that stayed together.
     pub fn kept(&self) -> Vec<(&[usize], Kept)> {
         match &self.fate {
-            Fate::Done => Vec::new(),
+            Fate::Done | Fate::Together => Vec::new(),
             Fate::Kept(kept) => vec![(&self.members, *kept)],
             Fate::Parted { stayed, left, .. } => stayed.kept().into_iter().chain(left.kept()).collect(),
+        }
+    }
+
+    /// Sets that the puzzle's groups allow to stay together.
+    pub fn together(&self) -> Vec<&[usize]> {
+        match &self.fate {
+            Fate::Together => vec![&self.members],
+            Fate::Parted { stayed, left, .. } => {
+                stayed.together().into_iter().chain(left.together()).collect()
+            }
+            _ => Vec::new(),
+        }
+    }
+
+    /// Sets that stayed together may.
+    fn excuse(&mut self) {
+        match &mut self.fate {
+            Fate::Kept(_) => self.fate = Fate::Together,
+            Fate::Parted { stayed, left, .. } => [stayed, left].into_iter().for_each(|s| s.excuse()),
+            _ => {}
         }
     }
 

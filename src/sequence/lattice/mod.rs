@@ -11,9 +11,13 @@ pub mod bricks;
 pub mod moves;
 pub mod pairs;
 pub mod search;
+pub mod starts;
 pub mod states;
+pub mod tables;
+pub mod tries;
 
 use crate::assembly::{Assembly, PartIx};
+use crate::spec::puzzle::groups::Groups;
 use crate::watch::{All, Watch};
 use apart::{Apart, take_apart};
 pub use bricks::NoLattice;
@@ -48,16 +52,18 @@ pub fn on_lattice(
     weight: impl Fn(PartIx) -> i32,
     most: Option<usize>,
 ) -> Result<OnLattice, NoLattice> {
-    on_lattice_watched(asm, parts, step, weight, most, &Watch::default())
+    on_lattice_watched(asm, parts, step, weight, most, None, &Watch::default())
 }
 
-/// The same, watched: a set that is being looked at when it is stopped stays together.
+/// The same, watched: a set that is being looked at when it is stopped stays together. `groups`: of the parts, in the
+/// order of `parts`; what they allow stays together.
 pub fn on_lattice_watched(
     asm: &Assembly,
     parts: &[PartIx],
     step: Option<f64>,
     weight: impl Fn(PartIx) -> i32,
     most: Option<usize>,
+    groups: Option<&Groups>,
     watch: &Watch,
 ) -> Result<OnLattice, NoLattice> {
     let (lattice, pieces) = pieces(asm, parts, step, weight)?;
@@ -65,6 +71,6 @@ pub fn on_lattice_watched(
     let all: Vec<usize> = (0..parts.len()).collect();
     let scene = Scene::new(pieces);
     let stage = watch.stage("moves along the axes", "positions", All::AtMost(most as u64));
-    let apart = take_apart(&scene, &all, most, &Looks { watch, stage });
+    let apart = take_apart(&scene, &all, most, groups, &Looks { watch, stage });
     Ok(OnLattice { lattice, pieces: scene.pieces, apart, most })
 }

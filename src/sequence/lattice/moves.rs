@@ -93,7 +93,7 @@ impl Gaps {
 }
 
 /// The part with all that it drags along, or None where that is more than `most`.
-fn dragged(met: &[Mask], part: usize, most: u32) -> Option<Mask> {
+pub(super) fn dragged(met: &[Mask], part: usize, most: u32) -> Option<Mask> {
     let (mut all, mut open): (Mask, Mask) = (1 << part, 1 << part);
     while open != 0 {
         let new = met[open.trailing_zeros() as usize] & !all;

@@ -73,6 +73,11 @@ impl Pair {
         Pair { a: a.to_vec(), b: b.to_vec(), from, to, known }
     }
 
+    /// Size of the table.
+    pub fn bytes(&self) -> usize {
+        self.known.len() * size_of::<AtomicU64>()
+    }
+
     /// With `b` moved by `offset`.
     pub fn reach(&self, offset: [i32; 3]) -> Reach {
         let inner: [i32; 3] = std::array::from_fn(|k| offset[k].clamp(self.from[k], self.to[k]));

@@ -8,9 +8,11 @@
 use super::moves::{Gaps, Mask, Move, Next, Way, next};
 use super::pairs::{Brick, Pair, around};
 use super::states::{Shift, States};
+use super::tables::Tables;
 use crate::watch::{Stage, Watch};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 /// A part on the lattice, in place.
 #[derive(Clone, Debug)]
@@ -29,7 +31,7 @@ pub struct Scene {
     /// Least corner of each piece, and its shape's number.
     at: Vec<[i32; 3]>,
     shape: Vec<usize>,
-    pairs: Vec<Pair>,
+    pairs: Vec<Arc<Pair>>,
     /// For each two pieces, row by row, which pair of shapes they are: the one with the lower number first.
     pair: Vec<usize>,
 }
@@ -37,24 +39,27 @@ pub struct Scene {
 /// States that are looked at between two looks at the bound; they share the threads.
 const BLOCK: usize = 512;
 
+/// States fewer than these are looked at by one thread: a state takes some microseconds, as waking another thread does.
+const FEW: usize = 8;
+
 impl Scene {
     pub fn new(pieces: Vec<Piece>) -> Scene {
+        Scene::with(pieces, &mut Tables::default())
+    }
+
+    /// With what is known of pairs of shapes from scenes before.
+    pub fn with(pieces: Vec<Piece>, tables: &mut Tables) -> Scene {
+        tables.make_room();
         let at: Vec<[i32; 3]> = pieces.iter().map(|p| around(&p.bricks).lo).collect();
-        let mut shapes: BTreeMap<Vec<Brick>, usize> = BTreeMap::new();
-        let shape: Vec<usize> = (pieces.iter().zip(&at))
-            .map(|(piece, at)| {
-                let next = shapes.len();
-                *shapes.entry(from_corner(&piece.bricks, *at)).or_insert(next)
-            })
-            .collect();
-        let of: BTreeMap<usize, &Vec<Brick>> = shapes.iter().map(|(bricks, k)| (*k, bricks)).collect();
+        let shape: Vec<usize> =
+            pieces.iter().zip(&at).map(|(p, at)| tables.shape(from_corner(&p.bricks, *at))).collect();
         let mut known: BTreeMap<(usize, usize), usize> = BTreeMap::new();
         let (mut pairs, mut pair) = (Vec::new(), Vec::new());
         for &a in &shape {
             for &b in &shape {
                 let key = (a.min(b), a.max(b));
                 pair.push(*known.entry(key).or_insert_with(|| {
-                    pairs.push(Pair::new(of[&key.0], of[&key.1]));
+                    pairs.push(tables.pair(key));
                     pairs.len() - 1
                 }));
             }
@@ -145,8 +150,12 @@ pub fn search(scene: &Scene, members: &[usize], start: &[Shift], most: usize, lo
             return Search { end: End::Stopped { moves: depth }, states: states.count() };
         }
         let block = head..states.count().min(head + BLOCK).min(layer.max(head + 1));
-        let found: Vec<Next> =
-            block.clone().into_par_iter().map(|k| next(&scene.gaps(members, states.get(k)))).collect();
+        let one = |k: usize| next(&scene.gaps(members, states.get(k)));
+        let found: Vec<Next> = if block.len() < FEW {
+            block.clone().map(one).collect()
+        } else {
+            block.clone().into_par_iter().map(one).collect()
+        };
         for (k, next) in block.clone().zip(found) {
             match next {
                 Next::Leave { parts, way } => {

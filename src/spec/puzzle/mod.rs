@@ -5,6 +5,7 @@
 //! (type 0) is read. Promised: numbers lie in the bounds stated here; a solution has as many placements as the problem
 //! has pieces. Not promised: that the pieces of a solution fill the result; `assembly::voxel` finds out.
 
+pub mod groups;
 mod level;
 mod problem;
 mod shape;

@@ -53,7 +53,16 @@ pub fn shape(reading: &mut Reading, node: &Node) -> Option<Shape> {
     let sides = ["x", "y", "z"].map(|k| reading.number(node, k, None, (0, MOST_SIDE)));
     let hot = ["hx", "hy", "hz"].map(|k| reading.number(node, k, Some(0), (-FARTHEST, FARTHEST)));
     let weight = reading.number(node, "weight", Some(1), (-MOST_WEIGHT, MOST_WEIGHT));
-    let kind = reading.number(node, "type", Some(0), (0, 0));
+    let is_bricks = node.attribute("type").is_none_or(|t| t.trim() == "0");
+    if !is_bricks {
+        let kind = quoted(node.attribute("type").unwrap_or_default());
+        reading.fault(
+            node,
+            "type",
+            format!("is {kind}: not drawn with bricks"),
+            "only bricks, type 0, are read",
+        );
+    }
     let [Some(x), Some(y), Some(z)] = sides else { return None };
     let size = [x as i32, y as i32, z as i32];
     let count = size.iter().map(|&s| s as usize).product::<usize>();
@@ -64,7 +73,7 @@ pub fn shape(reading: &mut Reading, node: &Node) -> Option<Shape> {
     let voxels =
         voxels(&node.text, size, count).map_err(|(what, hint)| reading.fault(node, "", what, hint)).ok();
     let [Some(hx), Some(hy), Some(hz)] = hot else { return None };
-    kind?;
+    is_bricks.then_some(())?;
     Some(Shape {
         size,
         voxels: voxels?,

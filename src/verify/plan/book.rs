@@ -143,9 +143,11 @@ impl Scene<'_> {
         let together: BTreeSet<Parts> = sets.iter().filter(|s| s.len() > 1 && !held(s)).cloned().collect();
         let named =
             |ids: &Vec<String>| ids.iter().filter_map(|id| self.ids.get(id.as_str()).copied()).collect();
-        let claimed: BTreeSet<Parts> = plan.stuck.iter().map(|s| named(&s.parts)).collect();
+        let grouped: BTreeSet<Parts> = plan.counted.iter().flat_map(|c| &c.together).map(named).collect();
+        let stuck: BTreeSet<Parts> = plan.stuck.iter().map(|s| named(&s.parts)).collect();
         let apart = plan.outcome == Outcome::Assembled;
-        match (together == claimed, together.is_empty() == apart) {
+        let is_all = stuck.is_disjoint(&grouped) && stuck.union(&grouped).eq(&together);
+        match (is_all, stuck.is_empty() == apart) {
             (false, _) => Err("the sets left together are not those that the plan names"),
             (_, false) => Err("the outcome does not fit the sets left together"),
             _ => Ok(()),
