@@ -64,7 +64,8 @@ fn planned(pieces: &[BTreeSet<At>]) -> (Option<usize>, usize) {
         pieces.iter().map(|p| Piece { bricks: bricks(p), held: false, weight: 1 }).collect();
     let all: Vec<usize> = (0..pieces.len()).collect();
     let watch = Watch::default();
-    let looks = Looks { watch: &watch, stage: watch.stage("", "", All::Open) };
+    let stage = watch.stage("", "", All::Open);
+    let looks = Looks { watch: &watch, stage: &stage };
     let apart = take_apart(&Scene::new(pieces), &all, 1_000_000, None, &looks);
     match apart.whole.fate {
         Fate::Parted { steps, .. } => (Some(steps.len()), apart.states),

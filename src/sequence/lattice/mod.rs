@@ -71,6 +71,6 @@ pub fn on_lattice_watched(
     let all: Vec<usize> = (0..parts.len()).collect();
     let scene = Scene::new(pieces);
     let stage = watch.stage("moves along the axes", "positions", All::AtMost(most as u64));
-    let apart = take_apart(&scene, &all, most, groups, &Looks { watch, stage });
+    let apart = take_apart(&scene, &all, most, groups, &Looks { watch, stage: &stage });
     Ok(OnLattice { lattice, pieces: scene.pieces, apart, most })
 }

@@ -133,7 +133,7 @@ pub struct Search {
 #[derive(Debug)]
 pub struct Looks<'w> {
     pub watch: &'w Watch,
-    pub stage: Stage,
+    pub stage: &'w Stage,
 }
 
 /// Searches from `start` with at most `most` states. `members` are indices of pieces; a state has three coordinates for

@@ -33,12 +33,11 @@ impl Tries {
     /// Each way by itself, in their order. `most`: positions for each.
     pub fn come_apart(&mut self, ways: &[(Lying, Option<Groups>)], most: usize, watch: &Watch) -> Vec<Tried> {
         let scenes: Vec<Option<Scene>> = ways.iter().map(|w| self.scene(&w.0)).collect();
+        let stage = watch.stage("moves along the axes", "positions", All::Open);
         let one = |(scene, (_, groups)): (&Option<Scene>, &(Lying, Option<Groups>))| {
             let Some(scene) = scene else { return Tried { comes_apart: false, positions: 0 } };
             let all: Vec<usize> = (0..scene.pieces.len()).collect();
-            let unseen = watch.unseen();
-            let stage = unseen.stage("moves along the axes", "positions", All::AtMost(most as u64));
-            let looks = Looks { watch: &unseen, stage };
+            let looks = Looks { watch, stage: &stage };
             let apart = take_apart(scene, &all, most, groups.as_ref(), &looks);
             Tried { comes_apart: apart.whole.kept().is_empty(), positions: apart.states }
         };
