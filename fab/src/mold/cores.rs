@@ -64,10 +64,11 @@ pub fn filled(ready: &Ready) -> Result<Solid, NotSolid> {
 /// Shafts and curtains end this far from what they must pass, mm, so that no face of theirs lies in one of the part.
 const BEYOND: f64 = 1.0;
 
-/// `tan`: of the draft of cores. `block`: corners of the mold's block.
+/// `tan`: of the draft of cores. `block`: corners of the mold's block. A core may stand behind another's place, and
+/// leave through it: then it has no grip outside.
 pub fn cores(
     ready: &Ready,
-    filled: Solid,
+    filled: &Solid,
     block: (DVec3, DVec3),
     tan: f64,
 ) -> Result<Option<Cored>, NotSolid> {
@@ -93,19 +94,17 @@ pub fn cores(
         cores.extend(found);
     }
     let left_mm3 = left.volume().max(0.0);
-    Ok((left_mm3 <= enough && !cores.is_empty()).then_some(Cored { filled, cores, left_mm3 }))
+    Ok((left_mm3 <= enough && !cores.is_empty()).then(|| Cored { filled: filled.clone(), cores, left_mm3 }))
 }
 
-/// A room's cores, each in one body that can be gripped outside; what an earlier core leaves behind it stands loose, and is
-/// left to another direction.
+/// A room's cores, each in one body.
 fn apart(room: &Solid, view: &View, enough: f64) -> Vec<Core> {
     let matter = |b: &Solid| b.mesh().volume() > enough;
-    let held = |b: &Solid| b.mesh().vertices.iter().any(|v| v.dot(view.d) > view.lid - GRIP / 2.0);
     let mut all = Vec::new();
-    for room in room.bodies().into_iter().filter(|b| matter(b) && held(b)) {
+    for room in room.bodies().into_iter().filter(matter) {
         let room = stl::uncrossed(&room).unwrap_or(room);
         let whole = room.minus(&view.ready.solid).thick(FINE);
-        let mut solids: Vec<Solid> = whole.bodies().into_iter().filter(|b| matter(b) && held(b)).collect();
+        let mut solids: Vec<Solid> = whole.bodies().into_iter().filter(matter).collect();
         let core = |solid: Solid, room: Solid| Core { solid, room, pull: view.d };
         match solids.len() {
             1 => all.extend(solids.pop().map(|solid| core(solid, room))),

@@ -76,7 +76,7 @@ fn candidate(mut ready: Ready, spec: &MoldSpec) -> Result<Result<Candidate, Stri
     ready.plane = parting::plane(&mesh, &parting::looks(&mesh, snap), snap);
     let plan = layout::plan(&ready.framed.mesh, ready.plane.height, &ready.tops, f, around);
     let tan = f.draft.value.to_radians().tan();
-    let Some(cored) = cores::cores(&ready, filled, (plan.low, plan.high), tan)? else {
+    let Some(cored) = cores::cores(&ready, &filled, (plan.low, plan.high), tan)? else {
         return Ok(Err("some undercut is seen from no direction outside".into()));
     };
     let rooms: Vec<Solid> = cored.cores.iter().map(|c| c.room.clone()).collect();
