@@ -4,9 +4,12 @@
 //! whole, so a face that touches in part leaves air in all of it.
 
 use crate::assembly::{Assembly, PartIx};
+use crate::blocking::bounds;
 use crate::contact::{Joined, Origin, Patch};
 use crate::solid::{Facet, Solid};
 use glam::{DAffine3, DVec3};
+use parry3d_f64::bounding_volume::Aabb;
+use parry3d_f64::partitioning::{Bvh, BvhBuildStrategy};
 use weavelock_fab::mesh::Mesh;
 use weavelock_fab::shape::{self, Job, PlacedPart, Role, Shape};
 
@@ -43,8 +46,7 @@ fn roles(joined: &Joined, part: PartIx) -> Vec<Role> {
     match &joined.origin {
         Origin::Woven(woven) => woven.faced(part).map(role).collect(),
         Origin::Meshes => {
-            let own: Vec<(&Patch, PartIx, f64)> =
-                joined.patches.iter().filter_map(|p| facing(p, part)).collect();
+            let own = Near::new(joined.patches.iter().filter_map(|p| facing(p, part)).collect());
             let facets = joined.assembly.solid(part).facets.iter();
             facets.map(|f| role(touched(&joined.assembly, part, f, &own))).collect()
         }
@@ -60,11 +62,38 @@ fn facing(patch: &Patch, part: PartIx) -> Option<(&Patch, PartIx, f64)> {
     }
 }
 
+/// Patches of a part, found by where they are.
+struct Near<'j> {
+    patches: Vec<(&'j Patch, PartIx, f64)>,
+    /// Over their boxes, each as much wider as the patch may lean off a facet on which one of its corners lies.
+    tree: Bvh,
+}
+
+impl<'j> Near<'j> {
+    fn new(patches: Vec<(&'j Patch, PartIx, f64)>) -> Near<'j> {
+        let wide = |(p, ..): &(&Patch, PartIx, f64)| {
+            let (lo, hi) = bounds(p.corners.iter().copied());
+            let lean = (hi - lo).length() * (2.0 * OFF_PLANE_SHARE).sqrt();
+            Aabb::new(lo - lean, hi + lean)
+        };
+        let boxes: Vec<Aabb> = patches.iter().map(wide).collect();
+        Near { tree: Bvh::from_leaves(BvhBuildStrategy::Binned, &boxes), patches }
+    }
+
+    /// In their order, those that may lie within this distance of the corners' box.
+    fn of(&self, corners: &[DVec3], within: f64) -> impl Iterator<Item = (&'j Patch, PartIx, f64)> {
+        let (lo, hi) = bounds(corners.iter().copied());
+        let mut found: Vec<u32> = self.tree.intersect_aabb(&Aabb::new(lo - within, hi + within)).collect();
+        found.sort_unstable();
+        found.into_iter().map(|k| self.patches[k as usize])
+    }
+}
+
 /// How far, as a share of the facet's size, a patch may stand off the facet that it lies on; contacts of meshes are
 /// found within a tolerance that is far smaller than a facet.
 const OFF_PLANE_SHARE: f64 = 1e-3;
 
-fn touched(asm: &Assembly, part: PartIx, facet: &Facet, patches: &[(&Patch, PartIx, f64)]) -> Option<PartIx> {
+fn touched(asm: &Assembly, part: PartIx, facet: &Facet, patches: &Near) -> Option<PartIx> {
     let (solid, pose) = (asm.solid(part), asm.part(part).pose);
     let corners: Vec<DVec3> =
         facet.corners.iter().map(|&c| pose.transform_point3(solid.vertices[c as usize])).collect();
@@ -77,7 +106,7 @@ fn touched(asm: &Assembly, part: PartIx, facet: &Facet, patches: &[(&Patch, Part
             && (patch.corners[0] - corners[0]).dot(normal).abs() <= slack
             && overlap(&patch.corners, &corners, normal, slack)
     };
-    patches.iter().find(|(p, _, sign)| lies(p, *sign)).map(|(_, with, _)| *with)
+    patches.of(&corners, slack).find(|(p, _, sign)| lies(p, *sign)).map(|(_, with, _)| with)
 }
 
 /// Whether two convex polygons of one plane share more than a border of the given width (separating axes).

@@ -9,16 +9,17 @@ use super::told::{News, Told, Trouble};
 use super::words;
 use crate::assembly::PartIx;
 use crate::contact::Joined;
-use crate::cores::{self, Contacts, Firm};
+use crate::cores::{self, Contacts, Firm, Guard};
 use crate::fault::Fault;
 use crate::input;
 use crate::report::answer::{self, Certificate, PlanAnswer, Sealed};
 use crate::report::file::write_whole;
 use crate::report::words as chapters;
 use crate::sequence::clearance::with_clearance;
-use crate::sequence::{self, Motions, Outcome, Plan, Searched};
+use crate::sequence::{self, Ends, Motions, Outcome, Plan, Searched};
 use crate::verify;
 use crate::weave::{self, Weave};
+use std::collections::BTreeSet;
 use std::path::Path;
 
 pub fn part(joined: &Joined, id: &str) -> Result<PartIx, Trouble> {
@@ -57,7 +58,9 @@ pub fn planned_by(placed: &Placed, of: &[PartIx], clearance_mm: f64, motions: Mo
     let (plan, why) = found.map_or_else(|why| (nothing(), Some(why)), |plan| (plan, None));
     let stopped = plan.stopped.then(|| stopped(&plan));
     let remarks = stopped.or(why.map(|why| format!("no plan was searched: {why}")));
-    let remarks = remarks.or_else(|| doubtful(joined, &plan).filter(|_| clearance_mm == 0.0));
+    let touching = clearance_mm == 0.0 && !plan.stopped;
+    let remarks = remarks.or_else(|| doubtful(joined, &plan).filter(|_| touching));
+    let remarks = remarks.or_else(|| cored(joined, &plan).filter(|_| touching));
     answer::plan(joined, plan, of, clearance_mm, remarks, placed.source.clone())
 }
 
@@ -91,6 +94,31 @@ fn doubtful(joined: &Joined, plan: &Plan<Certificate>) -> Option<String> {
         format!(
             "locked as written, but not shown to be whatever the files' digits leave open of their contacts, so no proof: {}",
             written.join("; ")
+        )
+    })
+}
+
+/// What to say of locked cores in sets that are not locked as a whole: of parts that no step has taken from their places.
+fn cored(joined: &Joined, plan: &Plan<Certificate>) -> Option<String> {
+    let asm = &joined.assembly;
+    let moved: BTreeSet<&String> =
+        plan.steps.iter().filter(|s| s.ends == Ends::Inside).flat_map(|s| &s.parts).collect();
+    let contacts = Contacts::new(joined.touching());
+    let at_home = |ids: &[String]| {
+        let own = |p: &PartIx| ids.contains(&asm.part(*p).id) && !moved.contains(&asm.part(*p).id);
+        asm.ids().filter(own).collect()
+    };
+    let open = plan.stuck.iter().filter(|s| s.lock.is_none());
+    let cores = open.flat_map(|s| cores::largest(&contacts, &at_home(&s.parts), Guard::With).largest);
+    let firm = cores.filter(|c| c.firm == Firm::Holds);
+    let named: Vec<String> = firm
+        .map(|c| c.parts.iter().map(|&p| asm.part(p).id.as_str()).collect::<Vec<_>>().join(", "))
+        .collect();
+    (!named.is_empty()).then(|| {
+        format!(
+            "locked among themselves, so no order of rigid moves takes these apart at zero clearance (`check` proves it \
+             as cores): {}",
+            named.join("; and ")
         )
     })
 }

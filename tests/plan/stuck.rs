@@ -78,3 +78,54 @@ fn a_block_behind_a_rim_gives_way_by_the_rim() {
 fn without_a_lock_nobody_has_to_give() {
     assert!(planned(&snapped(0.2), None).stuck.iter().all(|s| s.gives.is_none()));
 }
+
+/// Boxes as an OBJ file, each from its corners; the walls of a hollow one look inward.
+fn boxes(all: &[([f64; 3], [f64; 3], bool)]) -> String {
+    const SIDES: [[usize; 4]; 6] =
+        [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+    let mut text = String::new();
+    for (lo, hi, _) in all {
+        for k in 0..8 {
+            let at = |axis: usize| if k >> axis & 1 == 1 { hi[axis] } else { lo[axis] };
+            text += &format!("v {} {} {}\n", at(0), at(1), at(2));
+        }
+    }
+    for (n, (.., hollow)) in all.iter().enumerate() {
+        for side in SIDES {
+            let mut corners = side.map(|c| (8 * n + c + 1).to_string());
+            if *hollow {
+                corners.reverse();
+            }
+            text += &format!("f {}\n", corners.join(" "));
+        }
+    }
+    text
+}
+
+/// A die that its box fits on all sides; the box rattles in a closed case. The whole can move, and never comes apart.
+#[test]
+fn a_locked_core_in_a_set_that_can_move_is_told() {
+    let folder = std::env::temp_dir().join(format!("weavelock-cored-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).expect("a folder");
+    let cube = |lo: f64, hi: f64, hollow| ([lo; 3], [hi; 3], hollow);
+    let files = [
+        ("case.obj", boxes(&[cube(0., 60., false), cube(10., 50., true)])),
+        ("box.obj", boxes(&[cube(15., 45., false), cube(20., 40., true)])),
+        ("die.obj", boxes(&[cube(20., 40., false)])),
+    ];
+    let part = |(file, _): &(&str, String)| format!("[[part]]\nid = \"{}\"\nmesh = \"{file}\"\n", &file[..3]);
+    let spec: String = files.iter().map(part).collect();
+    files.iter().for_each(|(file, text)| std::fs::write(folder.join(file), text).expect("written"));
+    let file = folder.join("nested.toml");
+    std::fs::write(&file, format!("name = \"nested\"\n{spec}")).expect("written");
+    let program = std::process::Command::new(env!("CARGO_BIN_EXE_weavelock"))
+        .args(["plan", &file.display().to_string(), "--json"])
+        .output();
+    let out = program.expect("the program runs");
+    let answer: serde_json::Value = serde_json::from_slice(&out.stdout)
+        .unwrap_or_else(|e| panic!("{e}: {}", String::from_utf8_lossy(&out.stderr)));
+    let _ = std::fs::remove_dir_all(folder);
+    assert_eq!(answer["outcome"], "not-found", "{answer}");
+    let remarks = answer["remarks"].to_string();
+    assert!(remarks.contains("locked among themselves") && remarks.contains("box, die"), "{remarks}");
+}
