@@ -25,7 +25,7 @@ const STRIDE: usize = 123;
 /// The contacts' own and the axes' among them.
 const FIRST_WAYS: usize = 12;
 
-/// Pairs of cells, of parts whose boxes meet along a way, that are looked at over all ways, about two seconds: ways of large
+/// Pairs of cells, of parts whose boxes meet along a way, that are looked at over all ways, some seconds: ways of large
 /// sets on which there are too many are left out.
 const MOST_LOOKS: usize = 100_000_000;
 
