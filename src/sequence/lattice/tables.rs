@@ -1,7 +1,7 @@
 //! Takes shapes as bricks; gives them numbers, and for two of them what is known of the pair.
 //!
 //! Kept from scene to scene, so that what one assembly of a puzzle's pieces finds out serves the next. Not promised: that
-//! anything is kept, beyond [`MOST_BYTES`].
+//! anything is kept, beyond `MOST_BYTES`.
 
 use super::pairs::{Brick, Pair};
 use std::collections::BTreeMap;
