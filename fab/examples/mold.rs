@@ -36,11 +36,11 @@ fn run(arguments: &[String]) -> Fallible<()> {
     let part = read(file)?;
     let start = std::time::Instant::now();
     let mold = make(&part, &spec)?;
-    eprintln!("made in {:.0?}", start.elapsed());
+    eprintln!("made in {:.2?}", start.elapsed());
     let mut batch = Batch::new(folder)?;
     let mut report = write(&mold, &mut batch)?;
     batch.commit()?;
-    eprintln!("written and measured after {:.0?}", start.elapsed());
+    eprintln!("written and measured after {:.2?}", start.elapsed());
     check_openscad(&mut report, folder, "openscad");
     println!("{}", serde_json::to_string_pretty(&report)?);
     Ok(())

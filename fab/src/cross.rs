@@ -115,10 +115,12 @@ pub(crate) fn pairs(a: (&Mesh, &Bvh), b: (&Mesh, &Bvh), f: &mut impl FnMut(u32, 
 fn cross_in_mesh(mesh: &Mesh, s: u32, t: u32) -> bool {
     let (p, q) = (mesh.triangles[s as usize], mesh.triangles[t as usize]);
     let at = |v: u32| mesh.vertices[v as usize];
+    if p.iter().all(|v| !q.contains(v)) {
+        return disjoint_ids_cross(p.map(at), q.map(at));
+    }
     let shared: Vec<u32> = p.iter().copied().filter(|v| q.contains(v)).collect();
     let rest = |t: [u32; 3]| t.into_iter().filter(|v| !shared.contains(v)).map(at).collect::<Vec<_>>();
     match shared[..] {
-        [] => disjoint_ids_cross(p.map(at), q.map(at)),
         [v] => fans_cross(at(v), &rest(p), &rest(q)),
         [u, v] => folded(at(u), at(v), rest(p)[0], rest(q)[0]),
         _ => true,
@@ -126,13 +128,77 @@ fn cross_in_mesh(mesh: &Mesh, s: u32, t: u32) -> bool {
 }
 
 fn disjoint_ids_cross(p: [DVec3; 3], q: [DVec3; 3]) -> bool {
-    (0..3).any(|k| segment_meets([p[k], p[(k + 1) % 3]], q) || segment_meets([q[k], q[(k + 1) % 3]], p))
+    // Most pairs are far from each other's planes, or beside each other in one: both are seen without exact arithmetic.
+    if one_side(p, q) || one_side(q, p) || !meet_flat(p, q) {
+        return false;
+    }
+    let sides = |t: [DVec3; 3], of: [DVec3; 3]| of.map(|x| side(t[0], t[1], t[2], x));
+    let clear = |s: [f64; 3]| s == [1.0; 3] || s == [-1.0; 3];
+    let of_p = sides(q, p);
+    if clear(of_p) {
+        return false;
+    }
+    let of_q = sides(p, q);
+    if clear(of_q) {
+        return false;
+    }
+    if of_p == [0.0; 3] && of_q == [0.0; 3] {
+        return true;
+    }
+    let edge = |t: [DVec3; 3], s: [f64; 3], k: usize| ([t[k], t[(k + 1) % 3]], (s[k], s[(k + 1) % 3]));
+    let meets = |(e, s), t| edge_meets(e, s, t);
+    (0..3).any(|k| meets(edge(p, of_p, k), q) || meets(edge(q, of_q, k), p))
+}
+
+/// Whether all of `other` is on one side of the plane of `t` beyond round-off. Seven roundings of f64 in each of six
+/// products of a coordinate of each of three edges: 64 of 2^-53 bound them.
+fn one_side(t: [DVec3; 3], other: [DVec3; 3]) -> bool {
+    let (u, v) = (t[1] - t[0], t[2] - t[0]);
+    let (normal, off) = (u.cross(v), 64.0 / 9_007_199_254_740_992.0 * largest(u) * largest(v));
+    let beyond = |x: DVec3| {
+        let (side, slack) = (normal.dot(x - t[0]), off * largest(x - t[0]));
+        i32::from(side > slack) - i32::from(side < -slack)
+    };
+    other.map(beyond).iter().sum::<i32>().abs() == 3
+}
+
+fn largest(v: DVec3) -> f64 {
+    v.abs().max_element()
+}
+
+/// Whether closed triangles meet in projection along an axis in which they have area: else an edge of one has the other
+/// strictly beyond it, and they do not meet in space either. One without area counts as meeting what only a line square to it
+/// would part from it.
+fn meet_flat(p: [DVec3; 3], q: [DVec3; 3]) -> bool {
+    !parted(flattest(p, q), &p, &q)
+}
+
+/// Whether an edge of one of two segments or triangles has the other strictly beyond it, in projection along an axis.
+fn parted(drop: usize, p: &[DVec3], q: &[DVec3]) -> bool {
+    let beyond = |t: &[DVec3], other: &[DVec3], k: usize| {
+        let (a, b) = (t[k], t[(k + 1) % t.len()]);
+        let own = if t.len() > 2 { side2(drop, a, b, t[(k + 2) % t.len()]) } else { 0.0 };
+        let first = side2(drop, a, b, other[0]);
+        first != 0.0 && first != own && other[1..].iter().all(|x| side2(drop, a, b, *x) == first)
+    };
+    (0..p.len()).any(|k| beyond(p, q, k)) || (0..q.len()).any(|k| beyond(q, p, k))
+}
+
+/// The axis along which the larger of two triangles may be flattened without becoming a line.
+fn flattest(p: [DVec3; 3], q: [DVec3; 3]) -> usize {
+    let normal = |t: [DVec3; 3]| (t[1] - t[0]).cross(t[2] - t[0]).abs();
+    let (n, m) = (normal(p), normal(q));
+    if n.max_element() >= m.max_element() { n } else { m }.max_position()
 }
 
 /// Triangles that share a vertex cross when the far edge of one meets the other, or one lies in the other.
 fn fans_cross(v: DVec3, p: &[DVec3], q: &[DVec3]) -> bool {
     let (s, t) = ([v, p[0], p[1]], [v, q[0], q[1]]);
-    segment_meets([p[0], p[1]], t) || segment_meets([q[0], q[1]], s)
+    let drop = flattest(s, t);
+    let meets = |far: &[DVec3], other: [DVec3; 3]| {
+        !parted(drop, far, &other) && segment_meets([far[0], far[1]], other)
+    };
+    meets(p, t) || meets(q, s)
 }
 
 /// Triangles on both sides of an edge overlap when they are coplanar and on the same side of it.
@@ -146,7 +212,12 @@ fn folded(u: DVec3, v: DVec3, a: DVec3, b: DVec3) -> bool {
 /// Whether a closed segment meets a closed triangle.
 fn segment_meets([p, q]: [DVec3; 2], t: [DVec3; 3]) -> bool {
     let [a, b, c] = t;
-    let (sp, sq) = (side(a, b, c, p), side(a, b, c, q));
+    edge_meets([p, q], (side(a, b, c, p), side(a, b, c, q)), t)
+}
+
+/// The same where it is known on which sides of the triangle's plane the ends are.
+fn edge_meets([p, q]: [DVec3; 2], (sp, sq): (f64, f64), t: [DVec3; 3]) -> bool {
+    let [a, b, c] = t;
     if sp == 0.0 && sq == 0.0 {
         return segment_meets_flat([p, q], t);
     }

@@ -4,11 +4,11 @@
 //! are equal. It has no unit, so the name says `mm`.
 
 use crate::bvh::Bvh;
-use crate::cross;
+use crate::cross::{self, Crossing};
 use crate::mesh::{Closure, Mesh};
 use crate::solid::Solid;
 use glam::DVec3;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::io::{self, Read, Seek, Write};
 
 /// How far a vertex can move when its coordinates become f32, in mm, for coordinates up to `largest` mm: half a step of
@@ -55,41 +55,112 @@ pub fn on_grid(mesh: &Mesh) -> Mesh {
 /// `None`.
 pub fn settled(solid: &Solid) -> Option<(Mesh, f64)> {
     let mut closed = None;
-    for (mesh, size) in closed_on_grid(solid) {
-        if is_plain(&mesh) && same(solid, &mesh, size) {
-            return Some((mesh, size));
+    for candidate in closed_on_grid(solid) {
+        if let Some(plain) = plain(solid, &candidate) {
+            return Some(plain);
         }
-        closed.get_or_insert((mesh, size));
+        closed.get_or_insert((candidate.mesh, candidate.size));
     }
     closed
 }
 
+/// A closed mesh on `GRID` of some solid, and the size of detail that it cost, mm.
+struct Candidate {
+    mesh: Mesh,
+    size: f64,
+    by: By,
+}
+
+#[derive(Clone, Copy, PartialEq)]
+enum By {
+    /// Corners went less far than the size of detail, and nothing else was done: what only the solid or only the mesh has
+    /// is where the surface went through, a skin of that thickness.
+    Moving,
+    /// The kernel united edges; what came of it is measured.
+    Uniting,
+}
+
+/// The mesh, or that with the corners of its crossings united, if it is the solid's shape and no triangles cross.
+fn plain(solid: &Solid, candidate: &Candidate) -> Option<(Mesh, f64)> {
+    let found = crossings(&candidate.mesh);
+    let fits = |mesh: &Mesh, size: f64| candidate.by == By::Moving || same(solid, mesh, size);
+    if found.is_empty() {
+        return fits(&candidate.mesh, candidate.size).then(|| (candidate.mesh.clone(), candidate.size));
+    }
+    let (mesh, gap) = welded(&candidate.mesh, &found);
+    let size = candidate.size + gap;
+    let whole = mesh.closure() == Closure::Closed && crossings(&mesh).is_empty();
+    (whole && fits(&mesh, size)).then_some((mesh, size))
+}
+
+/// Corners of triangles that cross united where they are within `COARSEST` of each other, and how far one went at most: two
+/// sheets so near each other, as a step beside the silhouette leaves them, become one, and what was between them vanishes.
+fn welded(mesh: &Mesh, found: &[Crossing]) -> (Mesh, f64) {
+    let mut vertices = mesh.vertices.clone();
+    for c in found {
+        let mut of: Vec<u32> = mesh.triangles[c.triangles.0 as usize].to_vec();
+        of.extend(mesh.triangles[c.triangles.1 as usize]);
+        of.sort_unstable();
+        for (k, &a) in of.iter().enumerate() {
+            for &b in &of[k + 1..] {
+                let gap = mesh.vertices[a as usize].distance(mesh.vertices[b as usize]);
+                if gap > 0.0 && gap < COARSEST {
+                    vertices[b as usize] = vertices[a as usize];
+                }
+            }
+        }
+    }
+    let (united, went) = moved(mesh, &vertices);
+    (without_folds(united), went)
+}
+
+/// The mesh without pairs of triangles on the same corners that face away from each other.
+fn without_folds(mut mesh: Mesh) -> Mesh {
+    let turned = |t: [u32; 3]| {
+        let k = (0..3).min_by_key(|&k| t[k]).unwrap_or(0);
+        [t[k], t[(k + 1) % 3], t[(k + 2) % 3]]
+    };
+    let all: BTreeSet<[u32; 3]> = mesh.triangles.iter().map(|&t| turned(t)).collect();
+    mesh.triangles.retain(|&[a, b, c]| !all.contains(&turned([a, c, b])));
+    mesh
+}
+
 /// The solid as `settled`, or nothing where triangles would cross: what further booleans can rest on.
 pub fn uncrossed(solid: &Solid) -> Option<Solid> {
-    let found = closed_on_grid(solid).find(|(mesh, size)| is_plain(mesh) && same(solid, mesh, *size));
+    let found = closed_on_grid(solid).find_map(|c| plain(solid, &c));
     found.and_then(|(mesh, _)| Solid::of(&mesh).ok())
 }
 
-/// Closed meshes of the solid on `GRID` with more and more detail united, and the size of that detail.
-fn closed_on_grid(solid: &Solid) -> impl Iterator<Item = (Mesh, f64)> {
+/// Closed meshes of the solid on `GRID` with more and more detail united.
+fn closed_on_grid(solid: &Solid) -> impl Iterator<Item = Candidate> {
     let whole = solid.mesh();
     let finest = details(&whole).next().unwrap_or(COARSEST);
     let sizes = details(&whole);
-    let as_it_is = std::iter::once_with(move || (mended(on_grid(&whole), finest), finest));
-    let united = sizes.map(|size| (mended(on_grid(&solid.plain(size).mesh()), size), size));
-    as_it_is.chain(united).filter(|(mesh, _)| mesh.closure() == Closure::Closed)
+    let as_it_is = std::iter::once_with(move || {
+        let (mesh, went) = mended(on_grid(&whole), finest);
+        Candidate { mesh, size: finest + went, by: By::Moving }
+    });
+    let united = sizes.map(|size| {
+        let (mesh, _) = mended(on_grid(&solid.plain(size).mesh()), size);
+        Candidate { mesh, size, by: By::Uniting }
+    });
+    as_it_is.chain(united).filter(|c| c.mesh.closure() == Closure::Closed)
 }
 
 /// Whether uniting detail has left the shape alone: what only one of both has is a skin of that thickness at most.
 fn same(solid: &Solid, mesh: &Mesh, size: f64) -> bool {
-    let apart = |other: Solid| solid.minus(&other).volume() + other.minus(solid).volume();
+    let apart = |other: Solid| solid.volume() + other.volume() - 2.0 * solid.common(&other).volume();
     Solid::of(mesh).is_ok_and(|other| apart(other) <= size * mesh.area())
 }
 
 /// Whether no triangles are known to cross; one without area counts as crossing its neighbours. A crowd that is not
 /// looked through passes.
 pub fn is_plain(mesh: &Mesh) -> bool {
-    !matches!(cross::within(mesh, &Bvh::new(mesh)).as_deref(), Ok([_, ..]))
+    crossings(mesh).is_empty()
+}
+
+fn crossings(mesh: &Mesh) -> Vec<Crossing> {
+    cross::within(mesh, &Bvh::new(mesh)).unwrap_or_default()
 }
 
 /// Sizes of detail to do without, in mm: from `FINEST` snaps of the mesh, doubling up to `COARSEST`.
@@ -99,20 +170,27 @@ pub fn details(mesh: &Mesh) -> impl Iterator<Item = f64> + use<> {
     std::iter::successors(Some(FINEST * snap), |s| Some(s * 2.0)).take_while(|s| *s <= COARSEST)
 }
 
-/// The mesh with both ends of each edge united that is shorter than `size` and not between two opposite triangles.
-fn mended(mesh: Mesh, size: f64) -> Mesh {
+/// The mesh with both ends of each edge united that is shorter than `size` and not between two opposite triangles, and how far
+/// a corner went at most, mm.
+fn mended(mesh: Mesh, size: f64) -> (Mesh, f64) {
     let short: Vec<(u32, u32)> = mesh
         .loose_edges()
         .into_iter()
         .filter(|&(a, b)| mesh.vertices[a as usize].distance(mesh.vertices[b as usize]) < size)
         .collect();
     if short.is_empty() {
-        return mesh;
+        return (mesh, 0.0);
     }
-    let mut vertices = mesh.vertices;
+    let mut vertices = mesh.vertices.clone();
     short.iter().for_each(|&(a, b)| vertices[b as usize] = vertices[a as usize]);
+    moved(&mesh, &vertices)
+}
+
+/// The mesh with its corners there, and how far one went at most, mm.
+fn moved(mesh: &Mesh, vertices: &[DVec3]) -> (Mesh, f64) {
+    let went = mesh.vertices.iter().zip(vertices).map(|(a, b)| a.distance(*b)).fold(0.0, f64::max);
     let points = vertices.iter().map(|v| v.to_array().map(|x| x as f32 + 0.0)).collect();
-    united(points, mesh.triangles.into_iter())
+    (united(points, mesh.triangles.iter().copied()), went)
 }
 
 /// Two corners this many snaps apart stay apart when each moves by one.

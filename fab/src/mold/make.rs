@@ -57,9 +57,13 @@ pub struct Cast<'a> {
     pub pull: DVec3,
 }
 
-/// Adds pieces of which one is made each; what takes long is done for all of them at once.
-pub fn push_all(mold: &mut Mold, casts: &[Cast]) {
-    let settled: Vec<_> = casts.par_iter().map(|c| stl::settled(&c.solid)).collect();
+/// What takes long of adding pieces, done for all of them at once.
+pub fn settled(casts: &[Cast]) -> Vec<Settled> {
+    casts.par_iter().map(|c| stl::settled(&c.solid)).collect()
+}
+
+/// Adds pieces of which one is made each.
+pub fn push_all(mold: &mut Mold, casts: &[Cast], settled: Vec<Settled>) {
     for (c, settled) in casts.iter().zip(settled) {
         keep(mold, (c.name, c.kind), (&c.solid, settled), c.pull, 1);
     }
@@ -70,10 +74,17 @@ pub fn push(mold: &mut Mold, name: &str, kind: Kind, solid: &Solid, pull: DVec3,
     keep(mold, (name, kind), (solid, stl::settled(solid)), pull, copies);
 }
 
-/// A solid with what came of settling it: the mesh and the size of detail that it cost, or nothing.
-type Settled<'a> = (&'a Solid, Option<(Mesh, f64)>);
+/// What came of settling a solid: the mesh and the size of detail that it cost, or nothing.
+pub type Settled = Option<(Mesh, f64)>;
 
-fn keep(mold: &mut Mold, (name, kind): (&str, Kind), (solid, settled): Settled, pull: DVec3, copies: usize) {
+/// Adds a solid that is settled.
+pub fn keep(
+    mold: &mut Mold,
+    (name, kind): (&str, Kind),
+    (solid, settled): (&Solid, Settled),
+    pull: DVec3,
+    copies: usize,
+) {
     let (mesh, closed) = settled.map_or_else(|| (solid.mesh(), false), |(m, _)| (m, true));
     let plain = closed && (kind.is_made() || stl::is_plain(&mesh));
     if !kind.is_made() && !plain {

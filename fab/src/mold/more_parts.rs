@@ -148,7 +148,8 @@ fn built(candidate: &Candidate, formed: Formed, spec: &MoldSpec) -> Result<Resul
     }
     assign(&mut mold, &cored.cores);
     told(&mut mold, cored);
-    two_part::finish(mold, (&ready.solid, &cored.filled), &tools).map(Ok)
+    let aside = two_part::aside(&mold, &cored.filled)?;
+    two_part::finish(mold, &ready.solid, aside, &tools).map(Ok)
 }
 
 /// A half in one body: crumbs within what the cavity may be off are left away; more than that, in mm3, is too much.

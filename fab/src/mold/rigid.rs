@@ -64,10 +64,11 @@ pub fn halves(
     tools: &Tools,
 ) -> Result<[(&'static str, Solid, DVec3); 2], NotSolid> {
     let block = Solid::of(&cuboid(plan.low, plan.high))?;
-    let lower = || below.minus(cavity).with(&tools.keys).minus(&tools.bolts);
+    // The cavity, much the finest, last: each operation goes through all of both solids.
+    let lower = || below.with(&tools.keys).minus(&tools.bolts).minus(cavity);
     let upper = || {
         let cut = Solid::all(vec![tools.sockets.clone(), tools.bolts.clone(), tools.above.clone()]);
-        block.minus(below).minus(cavity).minus(&cut)
+        block.minus(below).minus(&cut).minus(cavity)
     };
     let (lower, upper) = rayon::join(lower, upper);
     Ok([("lower", lower, DVec3::NEG_Z), ("upper", upper, DVec3::Z)])

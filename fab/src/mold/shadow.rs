@@ -136,6 +136,9 @@ fn counter_clockwise(c: &[DVec3; 3]) -> Vec<DVec2> {
 /// The part of one convex polygon inside another, both counter-clockwise.
 pub fn clip(mut subject: Vec<DVec2>, by: Vec<DVec2>) -> Vec<DVec2> {
     for k in 0..by.len() {
+        if subject.is_empty() {
+            break;
+        }
         let (a, b) = (by[k], by[(k + 1) % by.len()]);
         let side = |p: DVec2| (b - a).perp_dot(p - a);
         let mut kept = Vec::with_capacity(subject.len() + 1);

@@ -2,16 +2,17 @@
 //!
 //! Not promised: that zero draft releases by itself; how much of it there is, is said.
 
+use crate::files::stl;
 use crate::mesh::Mesh;
 use crate::mold::checks::CAVITY_SHARE;
 use crate::mold::fill;
 use crate::mold::layout::{self, Around};
-use crate::mold::make::{Cast, blank, extra, finding, push, push_all, source};
+use crate::mold::make::{self, Cast, Settled, blank, extra, finding, push_all, source};
 use crate::mold::parting;
 use crate::mold::pictures;
 use crate::mold::prepare::Ready;
 use crate::mold::rigid::{self, Tools};
-use crate::mold::{Kind, Mold, MoldError, MoldSpec, Parting, Piece, Step, Volume, more_parts, scad};
+use crate::mold::{Extra, Kind, Mold, MoldError, MoldSpec, Parting, Piece, Step, Volume, more_parts, scad};
 use crate::report::{Finding, Severity};
 use crate::solid::{NotSolid, Solid};
 use glam::DVec3;
@@ -36,8 +37,9 @@ pub fn mold(part: &Mesh, ready: Ready, spec: &MoldSpec) -> Result<Mold, MoldErro
     let tools = rigid::Tools::of(&mold.plan, &spec.figures)?;
     let halves = rigid::halves(cavity, &below, &mold.plan, &tools)?;
     let casts = halves.map(|(name, solid, pull)| Cast { name, kind: Kind::Half, solid, pull });
-    push_all(&mut mold, &casts);
-    finish(mold, (cavity, cavity), &tools)
+    let (settled, aside) = rayon::join(|| make::settled(&casts), || aside(&mold, cavity));
+    push_all(&mut mold, &casts, settled);
+    finish(mold, cavity, aside?, &tools)
 }
 
 /// How much wider the steps of the file for OpenSCAD are, mm: so that two that meet in an edge overlap.
@@ -48,16 +50,29 @@ pub fn below(mold: &Mold, cavity: &Solid, ready: &Ready) -> Result<Solid, NotSol
     parting::below((mold.plan.low, mold.plan.high), cavity, &ready.plane, ready.framed.snap, 0.0)
 }
 
-/// The rest of a rigid mold that has its pieces: sources, volumes, steps, pictures. `plain`: the cavity without undercuts.
-pub fn finish(mut mold: Mold, (cavity, plain): (&Solid, &Solid), tools: &Tools) -> Result<Mold, MoldError> {
-    let pictures = || rayon::join(|| pictures::maps(&mold), || pictures::opened(&mold));
-    let (file, (maps, opened)) = rayon::join(|| stepped(&mold, plain), pictures);
+/// What needs no piece of the mold, and takes as long as they do.
+pub struct Aside {
+    /// Everything below a stepped parting, for a file that is read by itself.
+    below: Option<(Solid, Settled)>,
+    maps: Extra,
+}
+
+/// `plain`: the cavity without undercuts.
+pub fn aside(mold: &Mold, plain: &Solid) -> Result<Aside, NotSolid> {
+    let settled = |s: Option<Solid>| s.map(|s| (stl::settled(&s), s)).map(|(settled, s)| (s, settled));
+    let (below, maps) = rayon::join(|| stepped(mold, plain).map(settled), || pictures::maps(mold));
+    Ok(Aside { below: below?, maps })
+}
+
+/// The rest of a rigid mold that has its pieces: sources, volumes, steps, pictures.
+pub fn finish(mut mold: Mold, cavity: &Solid, aside: Aside, tools: &Tools) -> Result<Mold, MoldError> {
+    let opened = pictures::opened(&mold);
     mold.pieces.push(source("part", Kind::Part, &mold.part));
-    if let Some(file) = file? {
-        push(&mut mold, "below", Kind::Below, &file, DVec3::ZERO, 0);
+    if let Some((solid, settled)) = aside.below {
+        make::keep(&mut mold, ("below", Kind::Below), (&solid, settled), DVec3::ZERO, 0);
     }
     mold.findings.extend(draft_finding(&mold));
-    mold.extras.push(maps);
+    mold.extras.push(aside.maps);
     let channels = tools.above.minus(cavity).common(&Solid::of(&mold.part_box())?);
     mold.volumes.push(Volume { of: "cavity".into(), mm3: cavity.volume(), grams: None });
     mold.volumes.push(Volume { of: "channels and slots".into(), mm3: channels.volume(), grams: None });
@@ -69,7 +84,6 @@ pub fn finish(mut mold: Mold, (cavity, plain): (&Solid, &Solid), tools: &Tools) 
     Ok(mold)
 }
 
-/// Everything below a stepped parting, for a file that is read by itself.
 fn stepped(mold: &Mold, cavity: &Solid) -> Result<Option<Solid>, NotSolid> {
     let Some(Parting::Stepped { height_mm, off_mm2 }) = mold.parting else { return Ok(None) };
     let plane = parting::Plane { height: height_mm, wrong: off_mm2 };
