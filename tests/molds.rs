@@ -252,7 +252,8 @@ fn a_fin_that_the_printer_can_not_make_is_told_with_its_place() {
     };
     let fins = |wide: f64| {
         let report = measured(&make(&slotted(wide), &spec("slotted", Route::Rigid)).unwrap());
-        let told: Vec<_> = report.findings.into_iter().filter(|f| f.what.contains("has a fin of")).collect();
+        let told: Vec<_> =
+            report.findings.into_iter().filter(|f| f.what.contains("has a fin of 0.10 mm")).collect();
         let fins: Vec<_> = report.pieces.into_iter().filter_map(|p| p.fin).collect();
         assert_eq!(told.len(), fins.len());
         assert!(told.iter().all(|f| f.severity == Severity::Warning && f.remedy.contains("slot")));

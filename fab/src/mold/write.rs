@@ -103,14 +103,30 @@ fn report(mold: &Mold, back: &[Mesh]) -> MoldReport {
 /// A fin of a printed piece; its place is in the part's own frame.
 fn of_fin(mold: &Mold, piece: &WrittenPiece) -> Option<Finding> {
     let fin = piece.fin?;
+    let least = mold.figures.least_wall.value;
+    let (thick, wide) = (fin.thin.thickness_mm, fin.width_mm);
+    let (fin_words, remedy) = if thick < EDGE_SHARE * least {
+        (
+            "an edge that runs out to nothing".to_string(),
+            "the piece will end short of it: cut the flash that the casting gets there off, or print this piece on a finer \
+             machine",
+        )
+    } else {
+        (
+            format!("a fin of {thick:.2} mm"),
+            "widen what forms it in the part (a slot, the room beside a lip), print this piece on a finer machine, or set a \
+             strip of metal there",
+        )
+    };
     let what = format!(
-        "{} has a fin of {:.3} mm, thin over {:.1} mm; the printer of the mold makes none thinner than {} mm",
-        piece.file, fin.thin.thickness_mm, fin.width_mm, mold.figures.least_wall.value
+        "{} has {fin_words}, over {wide:.1} mm thinner than the {least} mm that the printer of the mold makes",
+        piece.file
     );
-    let remedy = "widen what forms it in the part (a slot, the room beside a lip), print this piece on a finer \
-                  machine, or set a strip of metal there";
     Some(finding(mold, Severity::Warning, fin.thin.at.to_vec(), what, remedy))
 }
+
+/// What thins to less than this share of the least wall is an edge: where it ends on paper is not where the print does.
+const EDGE_SHARE: f64 = 0.1;
 
 /// Lets OpenSCAD make each piece from the source in the folder, and adds what it finds to the report.
 pub fn check_openscad(report: &mut MoldReport, folder: &Path, program: &str) {
