@@ -103,9 +103,43 @@ pub fn molds(
     for file in prints::mold_plates(&printed, package) {
         folder.write(&file.name, &file.bytes)?;
     }
+    package.report.findings.extend(idle(output, recipe));
     package.report.molds_note = note(package);
     super::bill::add_molds(&mut package.bill, &package.report, &package.mold_sheets);
     Ok(())
+}
+
+/// What was asked of molds, and of print faces, where there are none.
+fn idle(output: &Output, recipe: &Recipe) -> Vec<Finding> {
+    let routes: Vec<Route> = output.report.routes.iter().map(|r| r.process.route).collect();
+    let molded = routes.iter().any(|r| routes_of_cavities(*r));
+    let printed = routes.iter().any(|r| r.prints_the_shape());
+    let print = &recipe.process.print;
+    let asked = [
+        (recipe.gang > 1 && !molded, "several castings at once (--gang)", "no mold has a cavity"),
+        (recipe.cavity != Cavity::Part && !molded, "the direct mold (--direct)", "no mold has a cavity"),
+        (
+            print.flatten.value > 0.0 && !printed,
+            "a flat print face (--flatten)",
+            "no part is printed in its own shape",
+        ),
+        (
+            print.elephant_foot.value > 0.0 && !printed,
+            "a chamfer (--elephant-foot)",
+            "no part is printed in its own shape",
+        ),
+    ];
+    let found = asked.iter().filter(|a| a.0).map(|(_, what, why)| {
+        Finding::note(
+            format!("{what} changed nothing: {why}"),
+            "leave it out, or choose a process that casts or prints the part",
+        )
+    });
+    found.collect()
+}
+
+fn routes_of_cavities(route: Route) -> bool {
+    routes(route).iter().any(|m| *m != mold::Route::LostWax)
 }
 
 /// The mold of a shape; `None` where the part was not written. Of a cavity that the parts around it form: that of the first
