@@ -120,7 +120,7 @@ mod tests {
         let (hidden, place) = (dir.join(".p.7.part"), dir.join("p"));
         let list = |names: &[&str]| names.iter().map(ToString::to_string).collect::<Vec<_>>();
         let plan = Plan { go: list(&["list", "gone"]), come: list(&["new/x", "kept", "a/b", "list"]) };
-        for steps in 0..=8 {
+        let lay_out = || {
             let _ = fs::remove_dir_all(&dir);
             for (folder, names, text) in [
                 (&place, vec!["list", "gone", "kept", "a/b", "mine"], "old"),
@@ -131,17 +131,27 @@ mod tests {
                     fs::write(folder.join(name), text).unwrap();
                 }
             }
-            let before = all(&place);
             begin(&hidden, &plan).unwrap();
+            all(&place)
+        };
+        for steps in 0..=8 {
+            let before = lay_out();
             cut_off(&hidden, &place, &plan, steps);
             assert!(steps == 0 || all(&place) != before, "{steps}");
             undo(&hidden, &place).unwrap();
             assert_eq!(all(&place), before, "{steps}");
         }
+        lay_out();
         go(&hidden, &place, &plan).unwrap();
         done(&hidden).unwrap();
         undo(&hidden, &place).unwrap();
-        assert_eq!(all(&place)["kept"], "new", "what is done is not undone");
+        let now = all(&place);
+        assert_eq!(
+            [&now["kept"], &now["new/x"], &now["mine"]],
+            ["new", "new", "old"],
+            "what is done is not undone"
+        );
+        assert!(!now.contains_key("gone"));
         fs::remove_dir_all(&dir).unwrap();
     }
 

@@ -121,6 +121,9 @@ impl Folder {
         {
             return Err(there(&self.place.join(name)));
         }
+        if let Some(folder) = names.iter().map(|n| self.place.join(n)).find(|p| p.is_dir()) {
+            return Err(failed("write", &folder)(io::ErrorKind::IsADirectory.into()));
+        }
         self.merge(names, stale)?;
         self.made.clear();
         Ok(())

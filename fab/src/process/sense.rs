@@ -238,7 +238,9 @@ fn replace(figure: &mut Figure, value: f64, kind: Bounds, name: &str, faults: &m
 
 fn check(value: f64, kind: Bounds, name: &str, faults: &mut Vec<FileFault>) {
     if !(kind.least..=kind.most).contains(&value) {
-        let what = format!("{name} of {value} {} is not possible", kind.unit);
+        // No caliper and no scale knows more digits.
+        let shown = if value.is_finite() { (value * 1e4).round() / 1e4 } else { value };
+        let what = format!("{name} of {shown} {} is not possible", kind.unit);
         let why = if kind.because.is_empty() { String::new() } else { format!("; {}", kind.because) };
         let hint = format!("from {} to {} {}{why}", kind.least, kind.most, kind.unit);
         faults.push(FileFault { line: 0, what, hint });
