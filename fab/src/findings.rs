@@ -5,6 +5,7 @@ use crate::gap::{FIT_TOLERANCE, Gap, Verdict};
 use crate::ledger::Scale;
 use crate::make::crossings;
 use crate::mesh::{Closure, Mesh};
+use crate::mold::fins::Looked;
 use crate::offset::{Failure, Why};
 use crate::report::{Finding, PartReport, Place, Report, RouteReport, Severity};
 use crate::shave::NotShaved;
@@ -246,5 +247,9 @@ fn of_walls(part: &PartReport) -> Vec<Finding> {
         let remedy = "widen the slot, or cut it open with a blade after printing; a finer process has a smaller fit";
         finding(Severity::Warning, s.thin.at.to_vec(), what, remedy)
     });
-    thin.into_iter().chain(sharp).chain(slot).collect()
+    let left = (part.slots_looked_at == Looked::Some).then(|| {
+        let what = "it has more narrow places than were looked at: there may be wider slots".to_string();
+        finding(Severity::Note, vec![], what, "make its mesh coarser")
+    });
+    thin.into_iter().chain(sharp).chain(slot).chain(left).collect()
 }

@@ -13,7 +13,7 @@ use crate::findings;
 use crate::gap::{self, Gap, Made, Promise, Verdict};
 use crate::ledger::Scale;
 use crate::mesh::Mesh;
-use crate::mold::fins::{self, Fin};
+use crate::mold::fins::{self, Fins, Looked};
 use crate::offset::{self, Aim, Offset};
 use crate::package::laying::{Laying, again, lay};
 use crate::pinch;
@@ -399,6 +399,7 @@ fn part_report(job: &Job, pieces: &[Piece], p: usize, recipe: &Recipe, folder: &
     let (nominal, finished) = (shape.volume(), piece.master.volume() / piece.scale.factor.powi(3));
     let [stl_name, obj_name] = file_names(&piece.stem).map(|name| folder.join(name).display().to_string());
     let same = piece.offset.same_as;
+    let slots = piece.made.as_ref().map_or(NO_FINS, |m| slots(m, process));
     PartReport {
         id: part.id.clone(),
         process: process.name.clone(),
@@ -417,19 +418,22 @@ fn part_report(job: &Job, pieces: &[Piece], p: usize, recipe: &Recipe, folder: &
         longest_move_mm: piece.offset.longest_move,
         wall: piece.made.as_ref().map(|m| wall::measure(&m.mesh, &m.tree, process.least_wall.value)),
         least_wall_mm: process.least_wall.value,
-        slot: piece.made.as_ref().and_then(|m| slot(m, process)),
+        slot: slots.widest,
+        slots_looked_at: slots.looked,
         checks: vec![],
     }
 }
 
-/// The widest slot of a printed shape that is narrower than two faces need to stay apart: a fin of air.
-fn slot(made: &Made, process: &Process) -> Option<Fin> {
+const NO_FINS: Fins = Fins { widest: None, looked: Looked::All };
+
+/// Slots of a printed shape that are narrower than two faces need to stay apart: fins of air.
+fn slots(made: &Made, process: &Process) -> Fins {
     let fit = 2.0 * process.clearance.value;
     let turned = Mesh {
         triangles: made.mesh.triangles.iter().map(|t| [t[0], t[2], t[1]]).collect(),
         vertices: made.mesh.vertices.clone(),
     };
-    if process.route.prints_the_shape() { fins::widest(&turned, &made.tree, fit) } else { None }
+    if process.route.prints_the_shape() { fins::fins(&turned, &made.tree, fit) } else { NO_FINS }
 }
 
 fn contact_area(job: &Job, p: usize) -> f64 {

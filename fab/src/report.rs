@@ -5,7 +5,7 @@ use crate::gap::Gap;
 use crate::ledger::Entry;
 use crate::mesh::{Closure, Mesh};
 use crate::mold::Kind;
-use crate::mold::fins::Fin;
+use crate::mold::fins::{Fin, Looked};
 use crate::process::{Figure, Process};
 use crate::wall::Walls;
 use glam::DVec3;
@@ -110,6 +110,7 @@ pub struct PartReport {
     pub least_wall_mm: f64,
     /// The widest slot of a printed shape that is narrower than the process's fit between two faces, finished size.
     pub slot: Option<Fin>,
+    pub slots_looked_at: Looked,
     pub checks: Vec<Check>,
 }
 

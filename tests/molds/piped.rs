@@ -34,8 +34,10 @@ fn cross() -> Mesh {
     outside.minus(&rod(6.0, -31.0, 31.0, x)).minus(&rod(6.0, -31.0, 31.0, y)).mesh()
 }
 
-/// Two pipes that end in a cube of the outer size. Their bores end flat, beyond one another: two cores could form them, but
-/// those found leave two small pieces in the corner that come out after them, without a grip of their own.
+/// Two pipes that end in a cube of the outer size. Their bores end flat, beyond one another, so that four cores are the least
+/// along straight ways: what is beyond the upright bore can leave only through it, along x; the core that goes there sweeps
+/// over all of the lying bore's width, and cuts what is below that bore off from the upright one, in two pieces that meet in
+/// a line. Those can leave only upwards, after both, without a grip of their own.
 fn elbow() -> Mesh {
     let corner = solid(&cuboid(DVec3::splat(-10.0), DVec3::splat(10.0)));
     let outside = Solid::all(vec![corner, rod(10.0, 0.0, 30.0, x), rod(10.0, 0.0, 30.0, z)]);

@@ -2,7 +2,7 @@
 //!
 //! Exact up to round-off where both sides of a fin are flat; fins that bend by more than a wall may (30 degrees) are
 //! measured stretch by stretch. Slivers less wide than the least wall, as steps of a parting leave them, are no fin: they
-//! only do not come out. Not promised: all fins of a piece that has very many; then the widest of those looked at.
+//! only do not come out. Not promised: all fins of a piece that has very many; then the answer says that some were left.
 
 use crate::bvh::Bvh;
 use crate::mesh::Mesh;
@@ -23,16 +23,30 @@ pub struct Fin {
     pub width_mm: f64,
 }
 
-/// Pairs of triangles that are looked at: more would take longer than the mold.
-const MOST_PAIRS: usize = 200_000;
+/// What was found on a piece.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Fins {
+    /// The widest of those looked at, if one is at least as wide as the least wall.
+    pub widest: Option<Fin>,
+    pub looked: Looked,
+}
 
-/// Directions of fins that are told apart; what looks elsewhere is left out.
-const MOST_SIDES: usize = 24;
+/// How much of a piece was looked at.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Looked {
+    All,
+    Some,
+}
+
+/// Pairs of triangles with a thin place between them that are laid out: at some microseconds each as long as a mold takes.
+const MOST_PAIRS: usize = 200_000;
 
 /// Widths are found to this share of the least wall.
 const STEP: f64 = 0.1;
 
-/// One side that fins lie against: the way it looks, and what lies thin behind it.
+/// One side that fins lie against: the way it looks, and what lies thin behind it. Sides look more than `wall::PARALLEL` apart,
+/// so there are at most 58: as many caps of half that angle as the sphere has area for.
 struct Side {
     turn: DMat3,
     normal: DVec3,
@@ -40,20 +54,22 @@ struct Side {
     thinnest: Thin,
 }
 
-/// The widest fin thinner than `least` mm, if one is at least as wide as that.
-pub fn widest(mesh: &Mesh, tree: &Bvh, least: f64) -> Option<Fin> {
+/// Fins thinner than `least` mm.
+pub fn fins(mesh: &Mesh, tree: &Bvh, least: f64) -> Fins {
     let mut pairs = Vec::new();
     wall::opposed(mesh, tree, least, |pair, thin| {
         pairs.push((pair, thin));
         if pairs.len() < MOST_PAIRS { least } else { 0.0 }
     });
+    let looked = if pairs.len() < MOST_PAIRS { Looked::All } else { Looked::Some };
     let mut sides: Vec<Side> = Vec::new();
     for ((s, t), thin) in pairs {
         lay(mesh, (s, t), thin, least, &mut sides);
     }
     let fins =
         sides.into_iter().map(|s| Fin { thin: s.thinnest, width_mm: solid::width(s.outlines, STEP * least) });
-    fins.filter(|f| f.width_mm >= least).max_by(|a, b| a.width_mm.total_cmp(&b.width_mm))
+    let widest = fins.filter(|f| f.width_mm >= least).max_by(|a, b| a.width_mm.total_cmp(&b.width_mm));
+    Fins { widest, looked }
 }
 
 /// Puts what two triangles have thin between them to the side that the first of them lies on.
@@ -61,14 +77,10 @@ fn lay(mesh: &Mesh, (s, t): (u32, u32), thin: Thin, least: f64, sides: &mut Vec<
     let (front, rear) = (mesh.corners(s as usize), mesh.corners(t as usize));
     let normal = (front[1] - front[0]).cross(front[2] - front[0]).normalize_or_zero();
     let known = sides.iter().position(|k| k.normal.dot(normal) > wall::PARALLEL.to_radians().cos());
-    let k = match known {
-        Some(k) => k,
-        None if sides.len() < MOST_SIDES => {
-            sides.push(Side { turn: upright(normal), normal, outlines: vec![], thinnest: thin });
-            sides.len() - 1
-        }
-        None => return,
-    };
+    let k = known.unwrap_or_else(|| {
+        sides.push(Side { turn: upright(normal), normal, outlines: vec![], thinnest: thin });
+        sides.len() - 1
+    });
     let side = &mut sides[k];
     let outline = between(front.map(|v| side.turn * v), rear.map(|v| side.turn * v), least);
     if outline.len() > 2 {
@@ -120,7 +132,9 @@ mod tests {
         let block = Solid::of(&cuboid(DVec3::ZERO, DVec3::new(20.0, 20.0, 5.0))).unwrap();
         let low = DVec3::new(9.0, 2.0, 4.0);
         let mesh = block.with(&Solid::of(&cuboid(low, low + fin)).unwrap()).mesh();
-        widest(&mesh, &Bvh::new(&mesh), 0.8)
+        let found = fins(&mesh, &Bvh::new(&mesh), 0.8);
+        assert_eq!(found.looked, Looked::All);
+        found.widest
     }
 
     #[test]

@@ -4,7 +4,7 @@ use crate::check::Check;
 use crate::files::FileError;
 use crate::mesh::Mesh;
 use crate::mold::figures::Figures;
-use crate::mold::fins::Fin;
+use crate::mold::fins::{Fin, Looked};
 use crate::mold::plan::Plan;
 use crate::mold::tops::Top;
 use crate::report::Finding;
@@ -266,6 +266,7 @@ pub struct WrittenPiece {
     pub triangles: usize,
     /// The widest fin of a printed piece that is thinner than the mold's printer makes.
     pub fin: Option<Fin>,
+    pub fins_looked_at: Looked,
     pub checks: Vec<Check>,
 }
 

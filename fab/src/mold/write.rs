@@ -9,7 +9,7 @@ use crate::check::{Check, Outcome};
 use crate::files::{Batch, FileError, stl};
 use crate::mesh::{Closure, Mesh};
 use crate::mold::checks::{self, Halves};
-use crate::mold::fins;
+use crate::mold::fins::{self, Fins, Looked};
 use crate::mold::make::finding;
 use crate::mold::{Kind, Measured, Mold, MoldError, MoldReport, Piece, Route, WrittenPiece, scad};
 use crate::report::{Finding, Place, Severity};
@@ -62,7 +62,11 @@ fn of_measure(mold: &Mold, m: &Measured) -> Finding {
 
 fn report(mold: &Mold, back: &[Mesh]) -> MoldReport {
     let least = mold.figures.least_wall.value;
-    let piece = |(p, m): (&Piece, &Mesh)| WrittenPiece {
+    let none = Fins { widest: None, looked: Looked::All };
+    let fins =
+        |(p, m): (&Piece, &Mesh)| if p.kind.is_printed() { fins::fins(m, &Bvh::new(m), least) } else { none };
+    let all: Vec<Fins> = mold.pieces.iter().zip(back).map(fins).collect();
+    let piece = |((p, m), fins): ((&Piece, &Mesh), &Fins)| WrittenPiece {
         name: p.name.clone(),
         kind: p.kind,
         file: scad::file_name(mold, &p.name),
@@ -72,10 +76,11 @@ fn report(mold: &Mold, back: &[Mesh]) -> MoldReport {
         watertight: m.closure() == Closure::Closed,
         bodies: m.topology().bodies,
         triangles: m.triangles.len(),
-        fin: if p.kind.is_printed() { fins::widest(m, &Bvh::new(m), least) } else { None },
+        fin: fins.widest,
+        fins_looked_at: fins.looked,
         checks: vec![],
     };
-    let pieces: Vec<WrittenPiece> = mold.pieces.iter().zip(back).map(piece).collect();
+    let pieces: Vec<WrittenPiece> = mold.pieces.iter().zip(back).zip(&all).map(piece).collect();
     let files =
         pieces.iter().map(|p| p.file.clone()).chain(mold.extras.iter().map(|e| e.name.clone())).collect();
     let mut findings = mold.findings.clone();
@@ -84,6 +89,10 @@ fn report(mold: &Mold, back: &[Mesh]) -> MoldReport {
         finding(mold, Severity::Error, vec![], what, "do not use this file; please report it with the part")
     }));
     findings.extend(pieces.iter().filter_map(|p| of_fin(mold, p)));
+    findings.extend(pieces.iter().filter(|p| p.fins_looked_at == Looked::Some).map(|p| {
+        let what = format!("{} has more thin places than were looked at: there may be wider fins", p.file);
+        finding(mold, Severity::Note, vec![], what, "make the mesh of the part coarser")
+    }));
     MoldReport {
         name: mold.name.clone(),
         route: mold.route,
