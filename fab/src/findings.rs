@@ -125,8 +125,10 @@ fn of_gap(gap: &Gap) -> Option<Finding> {
         Verdict::Short => (
             Severity::Error,
             format!(
-                "the least gap is {:.4} mm, promised {:.4}; neither part is written",
-                gap.least_mm, gap.promised_mm
+                "the least gap is {:.4} mm, promised {:.4}, {:.1e} mm less; neither part is written",
+                gap.least_mm,
+                gap.promised_mm,
+                gap.promised_mm - gap.least_mm
             ),
             SMALLER,
         ),
