@@ -1,5 +1,8 @@
 //! A fabricator's package as it lies on the disk: whole or not there, never over something unasked, readable by others.
 
+#[path = "package/workshop.rs"]
+mod workshop;
+
 use crate::support;
 use glam::DVec3;
 use serde_json::Value;

@@ -90,6 +90,61 @@ fn nonsense_is_refused_with_line_and_reason() {
     }
 }
 
+/// Silicone that cures hot goes by many names; room-temperature vulcanizing is none of them.
+#[test]
+fn silicone_that_is_cured_hot_is_refused_by_name_and_by_shrinkage() {
+    let tin = "material = \"tin-cure RTV silicone\"";
+    let as_material = |word: &str| edited("silicone-tin", tin, &format!("material = \"{word}\""));
+    for word in [
+        "HTV silicone",
+        "peroxide-cured silicone",
+        "Hot-cured silicone",
+        "silicone rubber (HCR)",
+        "LSR silicone",
+    ] {
+        let told = told(&as_material(word));
+        assert!(told.contains("is heat-cured") && told.contains("take platinum-cure"), "{word}: {told}");
+    }
+    for word in ["room temperature vulcanizing silicone", "RTV-2 silicone, vulcanises at room temperature"] {
+        Process::parse("my.toml", &as_material(word)).unwrap_or_else(|e| panic!("{word}: {e}"));
+    }
+    assert!(told(&edited("silicone-tin", "title = \"", "title = \"heat-cured ")).contains("is heat-cured"));
+    let hot = edited(
+        "silicone-platinum",
+        "value = 0.1\nunit = \"%\"\nlow = 0.0\nhigh = 0.1",
+        "value = 3\nunit = \"%\"\nlow = 2\nhigh = 4",
+    );
+    let renamed = hot.replacen("name = \"silicone\"", "name = \"cure\"", 1);
+    assert!(told(&renamed).contains("casts silicone, and 3 % is not possible"), "{}", told(&renamed));
+    let own = Overrides { shrinkage: [("cure".into(), 3.0)].into(), ..Overrides::default() };
+    let soft = source("silicone-platinum").unwrap().replacen("name = \"silicone\"", "name = \"cure\"", 1);
+    let refused = Process::parse("my.toml", &soft).unwrap().with(&own).unwrap_err().to_string();
+    assert!(refused.contains("heat-cured"), "{refused}");
+}
+
+#[test]
+fn a_route_has_its_cavity_and_its_schedule() {
+    let lost = |name: &str| source(name).unwrap().split("[[schedule]]").next().unwrap().to_string();
+    let bad = [
+        (
+            edited("wax-injected", "route = \"cast\"", "route = \"lost-wax\""),
+            "metal is poured into investment",
+        ),
+        (
+            edited("aluminium-lost-wax", "route = \"lost-wax\"", "route = \"cast\""),
+            "goes through a silicone mold",
+        ),
+        (edited("pu-resin", "route = \"cast\"", "route = \"cast-direct\""), "goes into a printed mold"),
+        (edited("pu-resin", "route = \"cast\"", "route = \"print\""), "a printed part has no cavity"),
+        (lost("pu-resin"), "\"schedule\" is missing"),
+    ];
+    for (text, word) in bad {
+        let told = told(&text);
+        assert!(told.contains(word) && told.contains("hint: "), "{word} is not in {told}");
+    }
+    assert!(Process::parse("my.toml", &lost("fdm-pla")).is_ok(), "a print needs no schedule");
+}
+
 #[test]
 fn all_faults_of_a_file_are_told_at_once() {
     let text = edited("wax-poured", "material = \"silicone\"", "material = \"PLA\"")
@@ -118,7 +173,11 @@ fn the_coupon_replaces_the_figure_of_each_step_that_was_measured() {
     assert!(steps(&p).iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-9), "{:?}", steps(&p));
     assert!(p.steps[0].shrinkage.source.contains("59.7"));
     let told = with(&["print=40", "metal=58"]).unwrap_err().to_string();
-    assert!(told.contains("print of 33.3") && told.contains("step \"metal\""), "{told}");
+    assert!(
+        told.contains("print: a bar of 40 mm after it, and so a shrinkage of 33.3333 %")
+            && told.contains("step \"metal\""),
+        "{told}"
+    );
     for bad in ["print", "print=", "=59", "print=long", "print=inf"] {
         assert!(Measured::parse(bad).is_err(), "{bad}");
     }

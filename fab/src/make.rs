@@ -15,7 +15,7 @@ use crate::ledger::Scale;
 use crate::mesh::Mesh;
 use crate::mold::fins::{self, Fins, Looked};
 use crate::offset::{self, Aim, Offset};
-use crate::package::laying::{Laying, lay};
+use crate::package::laying::{Laying, again, lay};
 use crate::pinch;
 use crate::process::Process;
 use crate::report::{Finding, PartReport, ReadBack, Report, RouteReport};
@@ -86,7 +86,22 @@ impl Recipe {
                 some(&known)
             ),
         };
-        self.parts.keys().filter(|id| !known.contains(id.as_str())).map(fault).collect()
+        let strangers = self.parts.keys().filter(|id| !known.contains(id.as_str())).map(fault);
+        strangers.chain(self.namesakes()).collect()
+    }
+
+    /// Processes that differ and are called the same: sheets, plates and coupons go by the name.
+    fn namesakes(&self) -> Vec<Fault> {
+        let all: Vec<&Process> = std::iter::once(&self.process).chain(self.parts.values()).collect();
+        let other = |k: usize| all[..k].iter().any(|q| q.name == all[k].name && *q != all[k]);
+        let names: BTreeSet<&str> = (0..all.len()).filter(|&k| other(k)).map(|k| &all[k].name[..]).collect();
+        let fault = |name: &str| Fault {
+            place: "fab.process".into(),
+            what: format!(
+                "two processes that differ are called \"{name}\" (hint: give the copied file a name of its own, in its line name = ...)"
+            ),
+        };
+        names.into_iter().map(fault).collect()
     }
 }
 
@@ -258,7 +273,7 @@ fn shave(process: &Process, piece: &mut Piece) {
     match shave::shaved(&piece.master, &laying, what) {
         Ok(master) => {
             piece.faults.extend(findings::of_mesh(&piece.id, &master, &piece.scale));
-            (piece.master, piece.laid) = (master, Some(laying));
+            (piece.laid, piece.master) = (Some(again(&master, &laying)), master);
         }
         Err(why) => piece.notes.push(findings::of_shaving(&piece.id, &why)),
     }

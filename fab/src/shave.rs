@@ -60,8 +60,10 @@ pub fn shaved(part: &Mesh, laying: &Laying, what: Shaving) -> Result<Mesh, NotSh
         solid = solid.minus(&Solid::all(tools));
     }
     let back = laying.turn.inverse();
-    let (mesh, _) = stl::settled(&solid).ok_or(NotShaved::Unwritable)?;
-    Ok(stl::snapped(&mesh.map(|v| back * v)))
+    // Turned before it is rounded: rounding a settled mesh again can make it cross itself.
+    let turned = Solid::of(&solid.mesh().map(|v| back * v))?;
+    let (mesh, _) = stl::settled(&turned).ok_or(NotShaved::Unwritable)?;
+    Ok(mesh)
 }
 
 /// A wedge along each edge of the print face.

@@ -198,8 +198,9 @@ pub struct Fab {
     /// Air on each face, over the process: `--clearance "0.25 mm"`
     #[arg(long, value_name = "LENGTH", value_parser = length)]
     pub clearance: Option<f64>,
-    /// Lengths in mm of the coupon's 60 mm bar after a step: `--measured print=59.80,silicone=59.75`
-    #[arg(long, value_name = "STEP=MM", value_delimiter = ',')]
+    /// Lengths in mm of the coupon's 60 mm bar after a step: `--measured print=59.80,silicone=59.75`; of one process
+    /// among several: `--measured sla:print=59.72`
+    #[arg(long, value_name = "[PROCESS:]STEP=MM", value_delimiter = ',')]
     pub measured: Vec<String>,
     /// Print bed by name or size: `--bed ender-3`, `--bed "250 x 210 x 220 mm"`
     #[arg(long, value_name = "NAME|SIZE")]

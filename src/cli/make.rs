@@ -12,7 +12,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use weavelock_fab::check::{Check, Outcome, Programs};
 use weavelock_fab::make::{self, Recipe};
-use weavelock_fab::process::{Overrides, Process};
+use weavelock_fab::process::{Measured, Overrides, Process};
 use weavelock_fab::report::{Finding, Report, RouteReport, Severity};
 
 /// Whether programs of others are asked.
@@ -110,21 +110,48 @@ fn has(process: &Process, step: &str) -> bool {
     process.steps.iter().any(|s| s.name == step)
 }
 
-/// Figures of a step hold for every process that has it.
+/// Between a process and a step of it, where a figure is not for all processes: `sla:print`.
+const OF_PROCESS: char = ':';
+
+/// The step of this process that a name stands for, and whether it names the process.
+fn step_in<'a>(process: &Process, name: &'a str) -> Option<(&'a str, bool)> {
+    if has(process, name) {
+        return Some((name, false));
+    }
+    let (of, step) = name.rsplit_once(OF_PROCESS)?;
+    (of == process.name && has(process, step)).then_some((step, true))
+}
+
+/// Figures of a step hold for every process that has it; one that names the process comes before one that does not.
 fn for_its_steps(own: &Overrides, process: &Process) -> Overrides {
-    let mut own = own.clone();
-    own.shrinkage.retain(|step, _| has(process, step));
-    own.measured.retain(|m| has(process, &m.step));
-    own
+    let mut shrinkage: BTreeMap<String, f64> = BTreeMap::new();
+    let mut measured: BTreeMap<String, Measured> = BTreeMap::new();
+    for for_it_alone in [false, true] {
+        let step =
+            |name: &str| step_in(process, name).filter(|s| s.1 == for_it_alone).map(|s| s.0.to_string());
+        shrinkage.extend(own.shrinkage.iter().filter_map(|(name, s)| Some((step(name)?, *s))));
+        let of_step = |m: &Measured| {
+            let step = step(&m.step)?;
+            Some((step.clone(), Measured { step, length: m.length }))
+        };
+        measured.extend(own.measured.iter().filter_map(of_step));
+    }
+    Overrides { shrinkage, measured: measured.into_values().collect(), ..own.clone() }
 }
 
 fn steps_of_none(own: &Overrides, used: &[&Process]) -> Vec<String> {
     let steps = own.shrinkage.keys().chain(own.measured.iter().map(|m| &m.step));
-    let known: std::collections::BTreeSet<&str> =
-        used.iter().flat_map(|p| p.steps.iter().map(|s| s.name.as_str())).collect();
-    let known_text = known.iter().copied().collect::<Vec<_>>().join(", ");
-    let none = steps.filter(|s| !known.contains(s.as_str()));
-    none.map(|s| format!("shrinkage is given for a step {s:?} that no process in use has\n  hint: their steps: {known_text}"))
+    let mut known: Vec<String> = Vec::new();
+    for p in used {
+        let line =
+            format!("{}: {}", p.name, p.steps.iter().map(|s| &s.name[..]).collect::<Vec<_>>().join(", "));
+        if !known.contains(&line) {
+            known.push(line);
+        }
+    }
+    let known = known.join("; ");
+    let none = steps.filter(|s| used.iter().all(|p| step_in(p, s).is_none()));
+    none.map(|s| format!("shrinkage is given for a step {s:?} that no process in use has\n  hint: their steps are {known}; PROCESS:STEP is a step of one of them"))
         .collect()
 }
 

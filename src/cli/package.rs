@@ -13,6 +13,7 @@ use crate::fabricate;
 use crate::report::content::{Chapter, Column, Table};
 use crate::spec::Subject;
 use serde::Serialize;
+use std::collections::BTreeMap;
 use std::path::Path;
 use weavelock_fab::make::{Cavity, Recipe};
 use weavelock_fab::mesh::Mesh;
@@ -66,26 +67,44 @@ pub fn of_run(placed: &Placed, out: &Path) -> Result<Told, Trouble> {
 }
 
 fn wish(asked: &Fab) -> Result<Wish, Trouble> {
-    let wrong = |what: String| Trouble::Word(format!("error: {what}"));
     let part = |text: &String| match text.split_once('=') {
         Some((id, name)) if !id.is_empty() && !name.is_empty() => Ok((id.to_string(), name.to_string())),
-        _ => Err(wrong(format!(
-            "{text:?} is no part and process\n  hint: as in --part weft-0=silicone-platinum"
-        ))),
+        _ => Err(format!("{text:?} is no part and process\n  hint: as in --part weft-0=silicone-platinum")),
     };
-    let measured = |text: &String| Measured::parse(text).map_err(wrong);
+    let mut faults = Vec::new();
+    let mut sound = |why: String| faults.push(format!("error: {why}"));
+    let parts: Vec<(String, String)> =
+        asked.parts.iter().filter_map(|t| part(t).map_err(&mut sound).ok()).collect();
+    let measured: Vec<Measured> =
+        asked.measured.iter().filter_map(|t| Measured::parse(t).map_err(&mut sound).ok()).collect();
+    twice(parts.iter().map(|p| &p.0)).for_each(|id| {
+        sound(format!("--part names two processes for {id:?}\n  hint: a part is made by one"));
+    });
+    twice(measured.iter().map(|m| &m.step)).for_each(|step| {
+        sound(format!("--measured gives two lengths after {step:?}\n  hint: give the mean of both bars"));
+    });
+    if !faults.is_empty() {
+        return Err(Trouble::Word(faults.join("\n")));
+    }
     Ok(Wish {
         process: asked.process.clone(),
-        parts: asked.parts.iter().map(part).collect::<Result<_, _>>()?,
+        parts,
         own: Overrides {
             clearance: asked.clearance,
-            measured: asked.measured.iter().map(measured).collect::<Result<_, _>>()?,
+            measured,
             bed: asked.bed.clone(),
             elephant_foot: asked.elephant_foot,
             flatten: asked.flatten,
             ..Overrides::default()
         },
     })
+}
+
+/// What is there more than once, each a single time.
+fn twice<'a>(names: impl Iterator<Item = &'a String>) -> impl Iterator<Item = &'a String> {
+    let mut count: BTreeMap<&String, usize> = BTreeMap::new();
+    names.for_each(|n| *count.entry(n).or_default() += 1);
+    count.into_iter().filter(|(_, n)| *n > 1).map(|(name, _)| name)
 }
 
 /// Names in the answer are paths that can be opened from here; those in the package's own list are below it.

@@ -2,6 +2,7 @@
 //!
 //! Not promised: that several renames are one; a machine that stops between two of them leaves some of the files.
 
+pub mod moving;
 pub mod obj;
 pub mod stale;
 pub mod stl;

@@ -1,9 +1,10 @@
 //! Takes a folder in which files are written beside their places; gives a mark that says so while it goes on, and clears
-//! what a killed run left there.
+//! what a killed run left there, after putting back what it had replaced.
 //!
 //! A mark is a locked file: the system frees the lock of whoever was killed. Not promised: anything where the disk knows
 //! no locks; then nothing is marked, and nothing cleared.
 
+use super::moving;
 use std::fs::{self, File};
 use std::io;
 use std::path::{Path, PathBuf};
@@ -38,6 +39,15 @@ pub fn mark(folder: &Path) -> Option<Mark> {
     None
 }
 
+impl Mark {
+    /// Lets go of the lock and leaves the file: whoever comes next clears, as after a killed run.
+    pub fn leave(self) {
+        let path = self.path.clone();
+        drop(self);
+        let _ = File::create(path);
+    }
+}
+
 impl Drop for Mark {
     fn drop(&mut self) {
         let _ = fs::remove_file(&self.path);
@@ -58,7 +68,12 @@ pub fn clear(folder: &Path) {
             continue;
         }
         for left in names().iter().filter(|n| is_of(n, process)) {
+            let place = folder.join(place_of(left));
             let left = folder.join(left);
+            // What a killed run had replaced comes back first; where it can not, it is kept.
+            if left.is_dir() && moving::undo(&left, &place).is_err() {
+                continue;
+            }
             let _ = if left.is_dir() { fs::remove_dir_all(left) } else { fs::remove_file(left) };
         }
         let _ = fs::remove_file(path);
@@ -70,6 +85,12 @@ fn is_of(name: &str, process: &str) -> bool {
     let stem = name.strip_prefix('.').and_then(|n| n.strip_suffix(".part"));
     let last = stem.and_then(|s| s.rsplit_once('.')).map(|s| s.1);
     last.is_some_and(|l| l.split_once('-').map_or(l, |s| s.0) == process)
+}
+
+/// The name of what a hidden folder is to become: `NAME` of `.NAME.PROCESS.part`.
+fn place_of(hidden: &str) -> &str {
+    let stem = hidden.strip_prefix('.').and_then(|n| n.strip_suffix(".part")).unwrap_or(hidden);
+    stem.rsplit_once('.').map_or(stem, |s| s.0)
 }
 
 #[cfg(test)]

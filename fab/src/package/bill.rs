@@ -4,6 +4,7 @@
 //! what is spilled, beyond the tenth that is added to metal.
 
 use super::molds::MoldSheet;
+use super::poured::CASTING;
 use crate::make::MM3_IN_CM3;
 use crate::mold::{Kind as PieceKind, Volume, WrittenPiece};
 use crate::process::{Process, Route};
@@ -127,7 +128,8 @@ pub fn add_molds(bill: &mut Bill, report: &Report, molds: &[MoldSheet]) {
     }
 }
 
-const MELT: &str = "metal to melt";
+/// What is melted for a tree, or for parts without one.
+pub const MELT: &str = "metal to melt";
 
 fn melts(m: &MoldSheet) -> bool {
     m.report.volumes.iter().any(|v| v.of == MELT)
@@ -146,24 +148,47 @@ fn mold_lines(m: &MoldSheet, process: &Process) -> Vec<Line> {
         let what = format!("printed {}: {}", p.kind.words(), p.file);
         line(what, &print.material, p.copies, p.volume_mm3, print.density.value, "if printed solid".into())
     };
-    printed.map(print_line).chain(m.report.volumes.iter().filter_map(|v| pour_line(m, v))).collect()
+    printed.map(print_line).chain(m.report.volumes.iter().filter_map(|v| pour_line(m, v, process))).collect()
 }
 
-/// `None` for volumes that nothing is weighed for.
-fn pour_line(m: &MoldSheet, v: &Volume) -> Option<Line> {
-    let silicone = v.of.contains("pour");
-    let (extra, material, note) = match silicone {
-        true => (POUR_EXTRA, "mold silicone", "with a tenth to spare"),
-        false => (1.0, v.of.as_str(), ""),
-    };
-    let mass_g = v.grams? * extra;
+/// What is bought for a volume: its material, how much more than the volume, why, and how often.
+struct Bought<'a> {
+    material: &'a str,
+    extra: f64,
+    note: &'static str,
+    count: usize,
+}
+
+/// `None` for what is no purchase: volumes that nothing is weighed for, wax of patterns (that of the tree has it), and the
+/// mix of powder and water, which stand for themselves.
+fn bought<'a>(m: &'a MoldSheet, v: &'a Volume, process: &'a Process) -> Option<Bought<'a>> {
+    let one = |material, extra, note| Some(Bought { material, extra, note, count: 1 });
+    if let Some(material) = v.of.strip_prefix(CASTING) {
+        // Every part of the shape is a casting; a gang makes some at once.
+        let pours = m.parts.len().div_ceil(m.castings.max(1));
+        let bought =
+            Bought { material, extra: POUR_EXTRA, note: "a pour each, with a tenth to spare", count: pours };
+        return (process.route != Route::LostWax).then_some(bought);
+    }
+    match v.of.as_str() {
+        "investment, mixed" => None,
+        MELT => one(&process.material, 1.0, "tree and a tenth"),
+        of if of.contains("pour") => one("mold silicone", POUR_EXTRA, "with a tenth to spare"),
+        of if of.starts_with("wax") => one("wax", 1.0, ""),
+        of => one(of, 1.0, ""),
+    }
+}
+
+fn pour_line(m: &MoldSheet, v: &Volume, process: &Process) -> Option<Line> {
+    let b = bought(m, v, process)?;
+    let mass_g = v.grams? * b.extra;
     Some(Line {
         what: format!("{}: {}", m.report.name, v.of),
-        material: material.to_string(),
-        count: 1,
-        volume_cm3: v.mm3 / MM3_IN_CM3 * extra,
+        material: b.material.to_string(),
+        count: b.count,
+        volume_cm3: v.mm3 / MM3_IN_CM3 * b.extra,
         mass_g,
-        total_g: mass_g,
-        note: note.to_string(),
+        total_g: mass_g * b.count as f64,
+        note: b.note.to_string(),
     })
 }

@@ -1,11 +1,11 @@
 //! Takes files one by one; gives a folder that appears whole or not at all.
 //!
 //! Everything is written into a folder beside, which is renamed in the end. Where the folder is there already its other
-//! files stay; a file of the same name is never replaced unasked. Not promised: that a machine which stops while files
-//! are moved into a folder that is there leaves either all or none of them. What a killed run leaves beside, the next run
-//! into a folder beside it clears.
+//! files stay; a file of the same name is never replaced unasked. Not promised: that a run which is killed while files
+//! are moved into a folder that is there leaves either all or none of them: the list is not there then, and the next run
+//! into a folder beside it puts back what was, and clears what it left.
 
-use crate::files::{FileError, stale};
+use crate::files::{FileError, moving, stale};
 use std::collections::BTreeSet;
 use std::fs;
 use std::io::{self, Write};
@@ -25,6 +25,10 @@ pub struct Folder {
     place: PathBuf,
     beside: PathBuf,
     replace: Replace,
+    /// The file that lists the package.
+    list: String,
+    /// Whether the hidden folder holds what could not be put back.
+    keep: bool,
     /// Folders that were made on the way to it, outermost first.
     made: Vec<PathBuf>,
     /// Whoever finds it locked leaves the hidden folder alone.
@@ -39,21 +43,23 @@ fn failed(action: &'static str, path: &Path) -> impl FnOnce(io::Error) -> FileEr
 impl Folder {
     /// Starts a folder; refuses at once where the list of a package lies there already.
     pub fn new(place: &Path, replace: Replace, list: &str) -> Result<Folder, FileError> {
+        let absolute = std::path::absolute(place).map_err(failed("make folder", place))?;
+        let parent = absolute.parent().unwrap_or(Path::new("/")).to_path_buf();
+        // First: a killed run may have taken the list aside.
+        stale::clear(&parent);
         if replace == Replace::Never && place.join(list).exists() {
             return Err(there(&place.join(list)));
         }
         if place.exists() && !place.is_dir() {
             return Err(failed("make folder", place)(io::ErrorKind::NotADirectory.into()));
         }
-        let absolute = std::path::absolute(place).map_err(failed("make folder", place))?;
-        let parent = absolute.parent().unwrap_or(Path::new("/")).to_path_buf();
         let made: Vec<PathBuf> =
             parent.ancestors().take_while(|p| !p.exists()).map(Path::to_path_buf).collect();
         let name = absolute.file_name().unwrap_or_default().to_string_lossy().into_owned();
         let beside = parent.join(format!(".{name}.{}.part", std::process::id()));
         let made: Vec<PathBuf> = made.into_iter().rev().collect();
-        let mut folder = Folder { place: absolute, beside, replace, made, mark: None };
-        stale::clear(&parent);
+        let list = list.to_string();
+        let mut folder = Folder { place: absolute, beside, replace, list, keep: false, made, mark: None };
         // One that a killed run of the same number left is nobody's.
         let _ = fs::remove_dir_all(&folder.beside);
         // The mark comes first: whoever is killed after it is cleared.
@@ -115,41 +121,33 @@ impl Folder {
         {
             return Err(there(&self.place.join(name)));
         }
-        self.merge(&names, stale)?;
+        if let Some(folder) = names.iter().map(|n| self.place.join(n)).find(|p| p.is_dir()) {
+            return Err(failed("write", &folder)(io::ErrorKind::IsADirectory.into()));
+        }
+        self.merge(names, stale)?;
         self.made.clear();
         Ok(())
     }
 
     /// Moves files into a folder that is there; what stood in their way is kept aside until all are in.
-    fn merge(&self, names: &[String], stale: &[String]) -> Result<(), FileError> {
-        let aside = self.beside.join(ASIDE);
-        let new: BTreeSet<&String> = names.iter().collect();
-        let gone = stale.iter().filter(|n| !new.contains(n));
-        let mut done: Vec<(PathBuf, PathBuf)> = Vec::new();
-        let result =
-            gone.map(|n| (n, false)).chain(names.iter().map(|n| (n, true))).try_for_each(|(name, comes)| {
-                let (from, to) = (self.beside.join(name), self.place.join(name));
-                if to.exists() {
-                    step(&to, &aside.join(name), &mut done)?;
-                }
-                if comes { step(&from, &to, &mut done) } else { Ok(()) }
-            });
-        if result.is_err() {
-            // Back in the other order; what can not be moved back stays aside and is told by the error's hint.
-            done.iter().rev().for_each(|(from, to)| drop(fs::rename(to, from)));
-        }
-        result
+    fn merge(&mut self, names: Vec<String>, stale: &[String]) -> Result<(), FileError> {
+        let plan = self.plan(names, stale);
+        moving::begin(&self.beside, &plan).map_err(failed("write", &self.place))?;
+        let moved = moving::go(&self.beside, &self.place, &plan)
+            .and_then(|()| moving::done(&self.beside).map_err(|cause| (self.place.clone(), cause)));
+        // What can not be moved back stays aside, with its note, for the next run.
+        self.keep = moved.is_err() && moving::undo(&self.beside, &self.place).is_err();
+        moved.map_err(|(path, cause)| FileError { action: "write", path, cause })
     }
-}
 
-/// Where replaced files wait; no file of a package starts with a dot.
-const ASIDE: &str = ".replaced";
-
-fn step(from: &Path, to: &Path, done: &mut Vec<(PathBuf, PathBuf)>) -> Result<(), FileError> {
-    let moved = to.parent().map_or(Ok(()), fs::create_dir_all).and_then(|()| fs::rename(from, to));
-    moved.map_err(failed("write", to))?;
-    done.push((from.to_path_buf(), to.to_path_buf()));
-    Ok(())
+    /// The list goes first and comes last: a folder without it is no package.
+    fn plan(&self, mut come: Vec<String>, stale: &[String]) -> moving::Plan {
+        let new: BTreeSet<&String> = come.iter().collect();
+        let listed = new.contains(&self.list).then(|| self.list.clone());
+        let go = listed.into_iter().chain(stale.iter().filter(|n| !new.contains(n)).cloned()).collect();
+        come.sort_by_key(|n| *n == self.list);
+        moving::Plan { go, come }
+    }
 }
 
 fn there(path: &Path) -> FileError {
@@ -163,6 +161,11 @@ fn there(path: &Path) -> FileError {
 impl Drop for Folder {
     /// Removes what was not committed; what can not be removed can not be helped here.
     fn drop(&mut self) {
+        if self.keep {
+            // The mark stays, unlocked: the next run puts back what it can.
+            self.mark.take().into_iter().for_each(stale::Mark::leave);
+            return;
+        }
         let _ = fs::remove_dir_all(&self.beside);
         drop(self.mark.take());
         for folder in self.made.iter().rev() {

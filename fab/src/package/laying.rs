@@ -68,6 +68,12 @@ pub fn lay(mesh: &Mesh) -> Laying {
     best.unwrap_or_else(|| laid(mesh, &faces, DVec3::NEG_Z))
 }
 
+/// The same way down of a mesh whose print face was cut: how it stands now.
+pub fn again(mesh: &Mesh, before: &Laying) -> Laying {
+    let faces: Vec<Face> = (0..mesh.triangles.len()).map(|t| face(mesh.corners(t))).collect();
+    laid(mesh, &faces, before.down)
+}
+
 fn face(corners: [DVec3; 3]) -> Face {
     let [a, b, c] = corners;
     let normal = (b - a).cross(c - a).normalize_or_zero();

@@ -9,6 +9,7 @@ pub mod folder;
 pub mod laying;
 mod molds;
 pub mod plate;
+mod poured;
 mod prints;
 mod sheets;
 mod verdicts;

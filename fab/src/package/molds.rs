@@ -5,6 +5,7 @@
 
 use super::PackageReport;
 use super::folder::Folder;
+use super::poured;
 use super::prints::{self, MoldPrint, kind_of, stem};
 use crate::ears::triangulate;
 use crate::files::Batch;
@@ -24,6 +25,8 @@ pub struct MoldSheet {
     /// The parts that it serves.
     pub parts: Vec<String>,
     pub process: String,
+    /// Castings at once.
+    pub castings: usize,
     #[serde(flatten)]
     pub report: MoldReport,
 }
@@ -63,12 +66,12 @@ pub fn molds(
     let mut printed = Vec::new();
     for p in (0..output.masters.len()).filter(|&p| output.masters[p].is_some() && kind_of(output, p) == p) {
         let part = &output.report.parts[p];
-        let route = output.report.routes.iter().find(|r| r.parts.contains(&part.id)).map(|r| r.process.route);
+        let process = recipe.process_of(&part.id);
         let parts: Vec<String> = (p..output.masters.len())
             .filter(|&q| output.masters[q].is_some() && kind_of(output, q) == p)
             .map(|q| output.report.parts[q].id.clone())
             .collect();
-        for &wanted in routes(route.unwrap_or(Route::Print)) {
+        for &wanted in routes(process.route) {
             let name = format!("{}-{}", stem(output, p), word(wanted));
             let count = if wanted == mold::Route::LostWax { parts.len() } else { recipe.gang };
             let spec = MoldSpec { count, ..MoldSpec::new(&name, wanted, figures.clone()) };
@@ -77,11 +80,19 @@ pub fn molds(
             match made((job, output), p, &spec, &recipe.cavity).map(|m| m.and_then(write)) {
                 Some(Ok((mold, mut report))) => {
                     batch.commit()?;
+                    let pattern = output.masters[p].as_ref().map_or(0.0, Mesh::volume);
+                    poured::add(&mut report, &mold, process, pattern * parts.len() as f64);
                     printed.extend(prints_of(mold, &part.process));
                     if let Some(programs) = &recipe.programs {
                         mold::check_openscad(&mut report, &place, &programs.openscad);
                     }
-                    keep(package, parts.clone(), &part.process, report);
+                    let sheet = MoldSheet {
+                        parts: parts.clone(),
+                        process: part.process.clone(),
+                        castings: count,
+                        report,
+                    };
+                    keep(package, sheet);
                 }
                 Some(Err(MoldError::File(e))) => return Err(e.into()),
                 Some(Err(e)) => package.report.findings.push(unmade(&parts, word(wanted), &e)),
@@ -92,9 +103,43 @@ pub fn molds(
     for file in prints::mold_plates(&printed, package) {
         folder.write(&file.name, &file.bytes)?;
     }
+    package.report.findings.extend(idle(output, recipe));
     package.report.molds_note = note(package);
     super::bill::add_molds(&mut package.bill, &package.report, &package.mold_sheets);
     Ok(())
+}
+
+/// What was asked of molds, and of print faces, where there are none.
+fn idle(output: &Output, recipe: &Recipe) -> Vec<Finding> {
+    let routes: Vec<Route> = output.report.routes.iter().map(|r| r.process.route).collect();
+    let molded = routes.iter().any(|r| routes_of_cavities(*r));
+    let printed = routes.iter().any(|r| r.prints_the_shape());
+    let print = &recipe.process.print;
+    let asked = [
+        (recipe.gang > 1 && !molded, "several castings at once (--gang)", "no mold has a cavity"),
+        (recipe.cavity != Cavity::Part && !molded, "the direct mold (--direct)", "no mold has a cavity"),
+        (
+            print.flatten.value > 0.0 && !printed,
+            "a flat print face (--flatten)",
+            "no part is printed in its own shape",
+        ),
+        (
+            print.elephant_foot.value > 0.0 && !printed,
+            "a chamfer (--elephant-foot)",
+            "no part is printed in its own shape",
+        ),
+    ];
+    let found = asked.iter().filter(|a| a.0).map(|(_, what, why)| {
+        Finding::note(
+            format!("{what} changed nothing: {why}"),
+            "leave it out, or choose a process that casts or prints the part",
+        )
+    });
+    found.collect()
+}
+
+fn routes_of_cavities(route: Route) -> bool {
+    routes(route).iter().any(|m| *m != mold::Route::LostWax)
 }
 
 /// The mold of a shape; `None` where the part was not written. Of a cavity that the parts around it form: that of the first
@@ -208,15 +253,16 @@ fn note(package: &PackageReport) -> String {
 
 fn unmade(parts: &[String], what: &str, why: &MoldError) -> Finding {
     Finding {
-        severity: Severity::Warning,
+        severity: Severity::Error,
         place: Place { parts: parts.to_vec(), at: vec![] },
         what: format!("no {what} was made: {why}"),
-        remedy: "make it by hand from the part's file, which has scale and clearance built in".into(),
+        remedy: "take another process for it with --part, or make the mold by hand from the part's file, which has scale and clearance built in".into(),
     }
 }
 
 /// Heats of a tree are left out: the process has its own, and a sheet that says two is no sheet.
-fn keep(package: &mut PackageReport, parts: Vec<String>, process: &str, mut report: MoldReport) {
+fn keep(package: &mut PackageReport, mut sheet: MoldSheet) {
+    let report = &mut sheet.report;
     report.steps.retain(|s| s.celsius.is_none());
     let file = |p: &mold::WrittenPiece| MoldFile {
         mold: report.name.clone(),
@@ -230,5 +276,5 @@ fn keep(package: &mut PackageReport, parts: Vec<String>, process: &str, mut repo
     let made = |p: &&mold::WrittenPiece| p.kind.is_made();
     package.report.molds.extend(report.pieces.iter().filter(made).map(file));
     package.report.findings.extend(report.findings.iter().cloned());
-    package.mold_sheets.push(MoldSheet { parts, process: process.to_string(), report });
+    package.mold_sheets.push(sheet);
 }

@@ -348,3 +348,48 @@ pub fn coupons(package: &mut PackageReport) -> Vec<Attachment> {
     }
     files
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::ears::triangulate;
+    use crate::shape::Facet;
+
+    /// An outline in the plane, 5 mm thick, with its corners on f32.
+    fn plate(outline: &[(f64, f64)]) -> Mesh {
+        let n = outline.len() as u32;
+        let at = |z: f64| outline.iter().map(move |&(x, y)| DVec3::new(f64::from(x as f32), y, z));
+        let vertices: Vec<DVec3> = at(0.0).chain(at(5.0)).collect();
+        let cap = |corners: Vec<u32>, normal| triangulate(&vertices, &Facet { corners, normal });
+        let mut triangles = cap((0..n).rev().collect(), DVec3::NEG_Z);
+        triangles.extend(cap((n..2 * n).collect(), DVec3::Z));
+        triangles
+            .extend((0..n).map(|a| (a, (a + 1) % n)).flat_map(|(a, b)| [[a, b, b + n], [a, b + n, a + n]]));
+        Mesh { vertices, triangles }
+    }
+
+    /// A fin of a nanometre near the origin is there in f32, and a hundred millimetres away it is not: its sides fall
+    /// together, and edges would have four triangles. What is put on the bed has it united before.
+    #[test]
+    fn a_mesh_that_rounding_would_open_is_settled_before_it_is_written() {
+        const FIN: f64 = 1e-6;
+        let outline = [
+            (-100.0, 0.0),
+            (10.0, 0.0),
+            (10.0, 5.0),
+            (FIN, 5.0),
+            (FIN, 15.0),
+            (0.0, 15.0),
+            (0.0, 5.0),
+            (-100.0, 5.0),
+        ];
+        let mesh = plate(&outline);
+        assert_eq!((mesh.closure(), stl::snapped(&mesh).closure()), (Closure::Closed, Closure::Closed));
+        let plain = stl::snapped(&mesh.map(|v| v - low(&mesh)));
+        assert_ne!(plain.closure(), Closure::Closed, "the fin survives: this tests nothing");
+        let settled = grounded(&mesh);
+        assert_eq!((settled.closure(), low(&settled)), (Closure::Closed, DVec3::ZERO));
+        let off = settled.volume() - mesh.volume();
+        assert!(off.abs() < FIN * mesh.area(), "{off}");
+    }
+}

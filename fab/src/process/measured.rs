@@ -59,6 +59,13 @@ pub(super) fn shrinkages(
     found
 }
 
+/// How a fault calls a step that was measured.
+pub(super) fn named(process: &Process, k: usize, all: &[Measured]) -> String {
+    let step = &process.steps[k].name;
+    let length = all.iter().find(|m| m.step == *step).map_or(f64::NAN, |m| m.length);
+    format!("{step}: a bar of {length} mm after it, and so a shrinkage")
+}
+
 fn figure(percent: f64, m: &Measured) -> Figure {
     let source =
         format!("measured by the user: {} mm on the coupon's {COUPON_MM} mm bar after {}", m.length, m.step);

@@ -69,10 +69,43 @@ pub(super) const SCHEDULE: [Bounds; 7] = [
     kind("mm", 0.0, 1000.0, ""),
 ];
 
-const HEAT_CURED: [&str; 4] = ["heat-cured", "heat cured", "htv", "vulcani"];
+/// Words for silicone that cures hot: HTV and LSR are trade names of kinds, HCR the gum that is pressed hot, and peroxide
+/// cures at no room's temperature.
+const HEAT_CURED: [&str; 12] = [
+    "heat-cur",
+    "heat cur",
+    "hot-cur",
+    "hot cur",
+    "heat-vulcani",
+    "heat vulcani",
+    "high temperature vulcani",
+    "high-temperature vulcani",
+    "peroxide",
+    "htv",
+    "hcr",
+    "lsr",
+];
+
+/// The word of a text that names heat-cured silicone.
+fn heat_cured(text: &str) -> Option<&'static str> {
+    let text = text.to_lowercase();
+    let apart = |w: &str| text.split(|c: char| !c.is_alphanumeric()).any(|x| x == w);
+    HEAT_CURED.into_iter().find(|w| if w.len() == 3 { apart(w) } else { text.contains(w) })
+}
 
 pub(super) fn shrinkage_of(step: &str) -> Bounds {
     if step.to_lowercase().contains("silicone") { SILICONE } else { SHRINKAGE }
+}
+
+/// The step in which the part itself is cast of silicone, whatever it is called: the last one.
+fn cast_of_silicone(p: &Process) -> Option<usize> {
+    let cast = p.route != Route::Print && p.material.to_lowercase().contains("silicone");
+    if cast { p.steps.len().checked_sub(1) } else { None }
+}
+
+/// Bounds of a step's shrinkage in its process.
+fn shrinkage_in(p: &Process, k: usize) -> Bounds {
+    if cast_of_silicone(p) == Some(k) { SILICONE } else { shrinkage_of(&p.steps[k].name) }
 }
 
 /// What the keys say only together.
@@ -90,18 +123,62 @@ pub(super) fn together(top: &mut Cursor, p: &Process) {
         let what = "the step \"metal\" is net, with the investment's expansion in it, and there is an investment step too";
         top.fault("step", what.into(), hint);
     }
-    if HEAT_CURED.iter().any(|w| p.material.to_lowercase().contains(w)) {
-        let what = format!("\"{}\" is heat-cured; molds and parts here cure at room temperature", p.material);
-        top.fault("material", what, "take platinum-cure or tin-cure RTV silicone");
+    silicone(top, p);
+    cast(top, p);
+}
+
+/// Silicone that is cured hot, by its name or by what it shrinks.
+fn silicone(top: &mut Cursor, p: &Process) {
+    let of_steps = p.steps.iter().map(|s| ("step", s.name.as_str()));
+    for (key, text) in [("title", p.title.as_str()), ("material", &p.material)].into_iter().chain(of_steps) {
+        if heat_cured(text).is_some() {
+            let what = format!("\"{text}\" is heat-cured; molds and parts here cure at room temperature");
+            top.fault(key, what, "take platinum-cure or tin-cure RTV silicone");
+        }
     }
-    if p.route == Route::Print && p.cavity.is_some() {
-        top.fault(
-            "cavity",
-            "a printed part has no cavity".into(),
-            "take out [cavity], or choose a route that casts",
-        );
+    let Some(last) = cast_of_silicone(p).map(|k| &p.steps[k]) else { return };
+    let s = last.shrinkage.value;
+    // A step that is called silicone was looked at where it was read.
+    if !last.name.to_lowercase().contains("silicone")
+        && s.is_finite()
+        && !(SILICONE.least..=SILICONE.most).contains(&s)
+    {
+        let what = format!("the step \"{}\" casts silicone, and {s} % is not possible", last.name);
+        top.fault("step", what, SILICONE.because);
     }
 }
+
+/// What a part is cast in goes by its route, and how, by its schedule.
+fn cast(top: &mut Cursor, p: &Process) {
+    let cavity = p.cavity.as_ref().map(|c| c.material.as_str());
+    let fault = match (p.route, cavity) {
+        (Route::Print, Some(_)) => {
+            Some(("a printed part has no cavity".into(), "take out [cavity], or choose a route that casts"))
+        }
+        (Route::Cast, Some(of)) if of != "silicone" => Some((
+            format!("the route \"cast\" goes through a silicone mold, and the cavity is {of}"),
+            FITTING_ROUTE,
+        )),
+        (Route::LostWax | Route::LostPrint, Some(of)) if of != "investment" => {
+            Some((format!("metal is poured into investment, and the cavity is {of}"), FITTING_ROUTE))
+        }
+        (Route::CastDirect, Some(of)) if ["silicone", "investment"].contains(&of) => Some((
+            format!("the route \"cast-direct\" goes into a printed mold, and the cavity is {of}"),
+            FITTING_ROUTE,
+        )),
+        _ => None,
+    };
+    if let Some((what, hint)) = fault {
+        top.fault("cavity", what, hint);
+    }
+    if p.route != Route::Print && p.schedule.is_empty() && !top.has("schedule") {
+        let hint = "at least one [[schedule]] with stage and do: mix, pour, cure; copy those of a process that comes along";
+        top.fault("schedule", "a casting has a schedule, and \"schedule\" is missing".into(), hint);
+    }
+}
+
+const FITTING_ROUTE: &str =
+    "cast-direct: PLA, PETG, ABS or resin; cast: silicone; lost-wax and lost-print: investment";
 
 /// Puts the user's figures in; gives everything that is wrong with them.
 pub(super) fn overrule(process: &mut Process, own: &Overrides) -> Vec<FileFault> {
@@ -111,18 +188,18 @@ pub(super) fn overrule(process: &mut Process, own: &Overrides) -> Vec<FileFault>
             replace(f, value, kind, name, faults);
         }
     };
+    let kinds: Vec<Bounds> = (0..process.steps.len()).map(|k| shrinkage_in(process, k)).collect();
     user(&mut process.clearance, own.clearance, CLEARANCE, "clearance", &mut faults);
     user(&mut process.print.elephant_foot, own.elephant_foot, SHAVING, "elephant_foot", &mut faults);
     user(&mut process.print.flatten, own.flatten, SHAVING, "flatten", &mut faults);
     for (name, &value) in &own.shrinkage {
-        match process.steps.iter_mut().find(|s| s.name == *name) {
-            Some(step) => replace(&mut step.shrinkage, value, shrinkage_of(name), name, &mut faults),
+        match process.steps.iter_mut().zip(&kinds).find(|(s, _)| s.name == *name) {
+            Some((step, kind)) => replace(&mut step.shrinkage, value, *kind, name, &mut faults),
             None => faults.push(no_such_step(process, name)),
         }
     }
     for (k, figure) in measured::shrinkages(process, &own.measured, &mut faults) {
-        let name = process.steps[k].name.clone();
-        check(figure.value, shrinkage_of(&name), &name, &mut faults);
+        check(figure.value, kinds[k], &measured::named(process, k, &own.measured), &mut faults);
         process.steps[k].shrinkage = figure;
     }
     match own.bed.as_deref().map(library::bed) {
@@ -161,7 +238,9 @@ fn replace(figure: &mut Figure, value: f64, kind: Bounds, name: &str, faults: &m
 
 fn check(value: f64, kind: Bounds, name: &str, faults: &mut Vec<FileFault>) {
     if !(kind.least..=kind.most).contains(&value) {
-        let what = format!("{name} of {value} {} is not possible", kind.unit);
+        // No caliper and no scale knows more digits.
+        let shown = if value.is_finite() { (value * 1e4).round() / 1e4 } else { value };
+        let what = format!("{name} of {shown} {} is not possible", kind.unit);
         let why = if kind.because.is_empty() { String::new() } else { format!("; {}", kind.because) };
         let hint = format!("from {} to {} {}{why}", kind.least, kind.most, kind.unit);
         faults.push(FileFault { line: 0, what, hint });

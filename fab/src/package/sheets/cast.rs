@@ -71,7 +71,9 @@ pub fn pour(p: &PackageReport) -> Option<String> {
         {
             s += &format!("\n{}, with sprues, runners and boxes:\n", m.report.name);
             let grams = |v: &crate::mold::Volume| v.grams.map_or(String::new(), |g| format!("{g:.1}"));
-            let row = |v: &crate::mold::Volume| vec![v.of.clone(), short(v.mm3 / MM3_IN_CM3), grams(v)];
+            let cm3 =
+                |v: &crate::mold::Volume| if v.mm3 > 0.0 { short(v.mm3 / MM3_IN_CM3) } else { String::new() };
+            let row = |v: &crate::mold::Volume| vec![v.of.clone(), cm3(v), grams(v)];
             s += &table(&["volume", "cm3", "g"], m.report.volumes.iter().map(row));
         }
         let parts = p.report.parts.iter().filter(|q| q.file.is_some() && r.parts.contains(&q.id));
@@ -82,11 +84,23 @@ pub fn pour(p: &PackageReport) -> Option<String> {
         };
         let head = ["part", "master, cm3", "finished, cm3", &format!("{}, g", r.process.material)];
         s += &table(&head, parts.map(row));
-        for line in
-            p.bill.lines.iter().filter(|l| l.what == "metal to melt" && l.material == r.process.material)
-        {
-            s += &format!("\nMetal to melt: {:.1} g of {} ({}).\n", line.total_g, line.material, line.note);
-        }
+        s += &metal(p, r);
     }
     Some(s)
+}
+
+/// Of all parts and trees of a route together.
+fn metal(p: &PackageReport, r: &RouteReport) -> String {
+    let melted = |l: &&crate::package::bill::Line| {
+        l.what.ends_with(crate::package::bill::MELT) && l.material == r.process.material
+    };
+    let lines: Vec<_> = p.bill.lines.iter().filter(melted).collect();
+    let notes: std::collections::BTreeSet<&str> = lines.iter().map(|l| l.note.as_str()).collect();
+    let total: f64 = lines.iter().map(|l| l.total_g).sum();
+    let note = notes.into_iter().collect::<Vec<_>>().join("; ");
+    if lines.is_empty() {
+        String::new()
+    } else {
+        format!("\nMetal to melt in all: {total:.1} g of {} ({note}).\n", r.process.material)
+    }
 }

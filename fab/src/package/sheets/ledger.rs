@@ -80,16 +80,21 @@ pub fn coupon(p: &PackageReport) -> String {
     let mut s = format!(
         "# Coupon: measure before you make\n\nThe coupon is drawn at its true size. Print it at 100 % with the settings of the parts, take it through every step that the parts go through (a mold of it, where they are molded), and measure it after each.\n\n1. **Shrinkage.** Both bars of the L are {COUPON_MM} mm long, outside to outside. Measure both cold, take the mean. Where it is not what the table says, make the package again:\n\n       weavelock fab FILE --measured STEP=LENGTH\n\n   with the length in mm after that step, as in `--measured print=59.80`; several steps with commas. In the spec the same is `[fab.shrinkage]` with `print = \"0.33 %\"`.\n2. **Clearance.** Push the key into the notches, number 1 next to the corner. The first in which it slides without force, and does not rattle, is your fit:\n\n       weavelock fab FILE --clearance \"0.25 mm\"\n\n   or `clearance = \"0.25 mm\"` in the spec's `[fab]`.\n",
     );
+    let several = p.coupons.len() > 1;
+    if several {
+        s += "\n`--clearance` holds for every process; for one of several, put the figure into a copy of its file (`weavelock processes NAME > my.toml`), and give the copy a name of its own. `--measured PROCESS:STEP=LENGTH` holds for that process alone.\n";
+    }
     for CouponReport { process, coupon: c } in &p.coupons {
         let Some(r) = p.report.routes.iter().find(|r| r.process.name == *process) else { continue };
         s += &format!("\n## {}\n", r.process.title);
         let mut length = c.bar_mm;
+        let of = if several { format!("{process}:") } else { String::new() };
         let expected = |e: &Entry| {
             length *= 1.0 - e.shrinkage_percent / 100.0;
             vec![
                 format!("after {}", e.step),
                 format!("{length:.2} mm"),
-                format!("`--measured {}=...`", e.step),
+                format!("`--measured {of}{}=...`", e.step),
             ]
         };
         s += &table(

@@ -108,7 +108,7 @@ pub fn bill(p: &PackageReport) -> String {
             l.what.clone(),
             l.material.clone(),
             l.count.to_string(),
-            short(l.volume_cm3),
+            if l.volume_cm3 > 0.0 { short(l.volume_cm3) } else { String::new() },
             format!("{:.1}", l.mass_g),
             format!("{:.1}", l.total_g),
             l.note.clone(),
