@@ -9,6 +9,7 @@ use manifold_rust::cross_section::CrossSection;
 use manifold_rust::linalg::{Vec2, Vec3};
 use manifold_rust::manifold::Manifold;
 use manifold_rust::types::{Error, MeshGL64, PolyVert};
+use rayon::prelude::*;
 
 /// A closed solid inside the kernel.
 #[derive(Clone)]
@@ -74,11 +75,11 @@ impl Solid {
         Solid(Manifold::empty())
     }
 
-    /// The union of all, taken two by two so that no solid is gone through more than log n times.
+    /// The union of all, taken two by two so that no solid is gone through more than log n times; on all threads.
     pub fn all(mut solids: Vec<Solid>) -> Solid {
         while solids.len() > 1 {
             solids = solids
-                .chunks(2)
+                .par_chunks(2)
                 .map(|p| if p.len() == 2 { p[0].with(&p[1]) } else { p[0].clone() })
                 .collect();
         }

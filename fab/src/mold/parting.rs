@@ -105,9 +105,9 @@ pub fn below(
     let wrong = |cut: &Solid, way: Look| -> Result<Solid, NotSolid> {
         Ok(Solid::all(wrong_side(&cut.mesh(), way, plane.height, snap, fat)?))
     };
-    let raised = wrong(&cavity.common(&other), Look::Down)?;
-    let lowered = wrong(&cavity.common(&half), Look::Up)?;
-    Ok(half.minus(&lowered).with(&raised))
+    let (raised, lowered) =
+        rayon::join(|| wrong(&cavity.common(&other), Look::Down), || wrong(&cavity.common(&half), Look::Up));
+    Ok(half.minus(&lowered?).with(&raised?))
 }
 
 /// What is between the plane and the facets that look the wrong way there, and on into the part.

@@ -44,8 +44,9 @@ pub struct Checked {
     pub mended: Option<String>,
 }
 
-/// Triangles of a part that is molded. Its shadows, sweeps and halves are gone through some dozen times: a part of 100,000
-/// is a matter of seconds, and more detail than this is below what a printer of molds makes.
+/// Triangles of a part that is molded. The mold of a tile of 2,640 took 0.4 s on two cores, of the same in 42,240 triangles 6 s, in
+/// 168,960 29 s: time goes with the number, and this many take about a minute. More detail than this is below what a printer
+/// of molds makes: on a part of 200 mm triangles are then half a millimetre wide.
 const MOST_TRIANGLES: usize = 300_000;
 
 /// Refuses what is no plain solid of one body.

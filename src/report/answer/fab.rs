@@ -116,6 +116,8 @@ pub struct PartAnswer {
     pub least_wall_mm: f64,
     /// The widest slot of a printed shape that is narrower than the fit between two faces.
     pub slot: Option<Object>,
+    /// Whether all slots were looked at: "all" or "some".
+    pub slots_looked_at: String,
     pub checks: Vec<Object>,
 }
 
