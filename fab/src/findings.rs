@@ -32,6 +32,7 @@ pub fn of_failure(id: &str, failure: &Failure) -> Finding {
         }
         Why::TurnedOver => "the clearance turns a triangle over that no collapse could mend",
         Why::Vanished => "the clearance leaves nothing of this part",
+        Why::Lost => "moving the faces would take away more of this part than a layer below them",
     };
     error(id, vec![failure.at], format!("{what}; nothing is written for the part"), SMALLER)
 }

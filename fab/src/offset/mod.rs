@@ -24,7 +24,7 @@ pub mod split;
 pub mod weld;
 
 use crate::mesh::Mesh;
-use crate::shape::{Job, Role};
+use crate::shape::{Job, Role, Shape};
 use body::Body;
 use glam::DVec3;
 use rayon::prelude::*;
@@ -72,6 +72,8 @@ pub enum Why {
     TurnedOver,
     /// Nothing is left of the solid.
     Vanished,
+    /// More went than a layer below its contact facets: collapses took a piece of it away.
+    Lost,
 }
 
 /// Edges shorter than this part of the depth are united before the move: for 0.2 mm that is 4 micrometres, a tenth of
@@ -94,7 +96,9 @@ pub fn offset(job: &Job, aims: &[Aim]) -> Vec<Offset> {
     let relieved = relief::relieve(&mut bodies, aims);
     let result = |p: usize| {
         let shared = if relieved[p].is_none() && relieved[same_as[p]].is_none() { same_as[p] } else { p };
-        finish(&bodies[p], &moved[&same_as[p]].1, relieved[p].as_ref(), shared)
+        let most = most_removed(&job.shapes[job.parts[p].shape], &job.parts[p].roles, aims[p].depth);
+        let least = job.shapes[job.parts[p].shape].volume() - most;
+        finish(&bodies[p], &moved[&same_as[p]].1, relieved[p].as_ref(), (shared, least))
     };
     (0..job.parts.len()).into_par_iter().map(result).collect()
 }
@@ -107,7 +111,54 @@ fn moved_body(job: &Job, shape: usize, contact: &[bool], aim: &Aim) -> (Body, Se
     (body, settled)
 }
 
-fn finish(body: &Body, settled: &Settled, relieved: Option<&Settled>, same_as: usize) -> Offset {
+/// Between two moved facets the air has 60 degrees or more; where it has less, what is left is carved. The tangent of half
+/// of what is missing to 180: by it, in depths squared for each length of edge, what both take reaches beyond their prisms.
+const SHARPEST: f64 = 1.732_050_807_568_877_2;
+
+/// What a move may take, at most, in mm3: the prisms below the contact facets; beside edges, between two of them the kite in
+/// the matter, else a half disc, since bodies may be parted there; and at corners a cube of two depths, shared by three facets.
+fn most_removed(shape: &Shape, roles: &[Role], depth: f64) -> f64 {
+    let contact = |f: usize| roles[f] != Role::Outer;
+    let below = |f: usize| shape.facet_area(f) * depth + corners_of(shape, f) / 3.0 * (2.0 * depth).powi(3);
+    let prisms: f64 = (0..shape.facets.len()).filter(|&f| contact(f)).map(below).sum();
+    let beside = |(f, g, along): (usize, usize, DVec3)| {
+        let (n, m) = (shape.facets[f].normal, shape.facets[g].normal);
+        let between = match n.cross(m).dot(along) {
+            _ if !(contact(f) && contact(g)) => std::f64::consts::FRAC_PI_2,
+            s if s < 0.0 => (n.angle_between(m) / 2.0).tan().min(SHARPEST),
+            _ => 0.0,
+        };
+        between * along.length() * depth * depth
+    };
+    prisms + edges(shape).into_iter().map(beside).sum::<f64>()
+}
+
+fn corners_of(shape: &Shape, f: usize) -> f64 {
+    shape.facets[f].corners.len() as f64
+}
+
+/// The two facets of each edge, and the edge as the first of them runs along it.
+fn edges(shape: &Shape) -> Vec<(usize, usize, DVec3)> {
+    let ends = |f: usize| {
+        let c = &shape.facets[f].corners;
+        (0..c.len()).map(move |k| (c[k], c[(k + 1) % c.len()]))
+    };
+    let all: BTreeMap<(u32, u32), usize> =
+        (0..shape.facets.len()).flat_map(|f| ends(f).map(move |e| (e, f))).collect();
+    let both = |(&(a, b), &f): (&(u32, u32), &usize)| {
+        let g = *all.get(&(b, a)).filter(|_| a < b)?;
+        Some((f, g, shape.vertices[b as usize] - shape.vertices[a as usize]))
+    };
+    all.iter().filter_map(both).collect()
+}
+
+/// `same_as` and the least volume that may be left.
+fn finish(
+    body: &Body,
+    settled: &Settled,
+    relieved: Option<&Settled>,
+    (same_as, least): (usize, f64),
+) -> Offset {
     let last = relieved.unwrap_or(settled);
     let live: Vec<&body::Corner> =
         body.corners.iter().zip(&body.star).filter(|(_, s)| !s.is_empty()).map(|(c, _)| c).collect();
@@ -115,11 +166,33 @@ fn finish(body: &Body, settled: &Settled, relieved: Option<&Settled>, same_as: u
     let turned = last.unsettled.iter().map(|&at| Failure { at, why: Why::TurnedOver });
     let mut failures: Vec<Failure> = no_room.chain(turned).collect();
     let (mesh, _) = body.mesh();
-    if mesh.volume() <= 0.0 {
+    let left = mesh.volume();
+    if left <= 0.0 || left < least {
         let at = live.iter().map(|c| c.anchor).sum::<DVec3>() / live.len().max(1) as f64;
-        failures.push(Failure { at, why: Why::Vanished });
+        failures.push(Failure { at, why: if left <= 0.0 { Why::Vanished } else { Why::Lost } });
     }
     let longest_move = live.iter().map(|c| c.at.distance(c.anchor)).fold(0.0, f64::max);
     let collapses = settled.collapses + relieved.map_or(0, |r| r.collapses);
     Offset { mesh, collapses, longest_move, same_as, failures }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::shape::Facet;
+
+    /// A cube with the faces named as contact; what may go below them is at least what goes, and far less than the cube.
+    #[test]
+    fn what_a_move_may_take_holds_what_it_takes() {
+        let corner = |k: u32| DVec3::new(f64::from(k & 1), f64::from(k >> 1 & 1), f64::from(k >> 2)) * 10.0;
+        let quads = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+        let normals = [DVec3::NEG_Z, DVec3::Z, DVec3::NEG_Y, DVec3::Y, DVec3::NEG_X, DVec3::X];
+        let facet = |(q, normal): (&[u32; 4], DVec3)| Facet { corners: q.to_vec(), normal };
+        let facets: Vec<Facet> = quads.iter().zip(normals).map(facet).collect();
+        let cube = Shape { vertices: (0..8).map(corner).collect(), facets };
+        let taken = 1000.0 - 9.8f64.powi(3);
+        let most = most_removed(&cube, &[Role::Contact { with: 1 }; 6], 0.1);
+        assert!(most >= taken && most < 1.1 * taken, "{most} {taken}");
+        assert_eq!(edges(&cube).len(), 12);
+    }
 }
