@@ -108,3 +108,23 @@ fn the_print_face_is_flattened_and_chamfered_on_demand() {
         assert_eq!(s.read_back.watertight, Some(true));
     }
 }
+
+/// Pieces of a burr have notches as deep as they are wide: what a clearance takes from each is a layer below the faces that
+/// touch and what is beside their edges, and no arm of it. A piece that can not be made so is told.
+#[test]
+fn a_clearance_takes_no_arm_off_a_burr() {
+    let file = crate::support::root().join("fixtures/assemblies/burr.toml");
+    let spec = weavelock::spec::read(&file).unwrap();
+    let joined = weavelock::contact::join(&spec).unwrap();
+    let report = made(&weavelock::fabricate::job(&joined), &recipe(0.2));
+    let written: Vec<_> = report.parts.iter().filter(|p| p.file.is_some()).collect();
+    assert!(written.len() >= 4, "{:#?}", report.findings);
+    for p in &written {
+        assert!((0.9..1.1).contains(&(p.removed_mm3 / p.clearance_volume_mm3)), "{} {}", p.id, p.removed_mm3);
+    }
+    let lost = report.parts.iter().filter(|p| p.file.is_none());
+    for p in lost {
+        let told = report.findings.iter().filter(|f| f.severity == Severity::Error);
+        assert!(told.into_iter().any(|f| f.place.parts.contains(&p.id)), "{}", p.id);
+    }
+}
