@@ -300,7 +300,8 @@ fn the_bill_holds_what_a_mold_takes() {
     assert_eq!(halves.len(), 2, "{lines:?}");
     assert!(halves.iter().all(|l| l["mass_g"].as_f64().is_some_and(|g| g > 0.0)));
     let sheet = fs::read_to_string(at.join("p/3-molds.md")).expect("a mold sheet");
-    assert!(sheet.contains("keys fit one way only") && sheet.contains("opened.png"), "{sheet}");
+    let all = ["keys fit one way only (cones of 8 mm", "opened.png", "than the 2 degrees that are asked for"];
+    assert!(all.iter().all(|words| sheet.contains(words)), "{sheet}");
 }
 
 #[test]

@@ -1,5 +1,6 @@
 //! Takes a mold; gives its pictures: draft and undercut on the part from both ends, the halves opened, the prints.
 
+use crate::mesh::Mesh;
 use crate::mold::picture::{Painted, png};
 use crate::mold::{Extra, Kind, Maps, Mold, Piece};
 use glam::DVec3;
@@ -30,7 +31,12 @@ pub fn maps(mold: &Mold) -> Extra {
 /// The mold opened: the upper half turned over beside the lower, cores drawn out of the lower along their pulls.
 pub fn opened(mold: &Mold) -> Extra {
     let halves: Vec<&Piece> = mold.pieces.iter().filter(|p| p.kind == Kind::Half).collect();
-    let over = halves[1].mesh.map(|v| DVec3::new(v.x, -v.y, -v.z));
+    beside(mold, &halves[0].mesh, &halves[1].mesh)
+}
+
+/// The same of halves that are no pieces of it: those that are poured.
+pub fn beside(mold: &Mold, lower: &Mesh, upper: &Mesh) -> Extra {
+    let over = upper.map(|v| DVec3::new(v.x, -v.y, -v.z));
     let wide = mold.plan.high - mold.plan.low;
     let cores: Vec<&Piece> = mold.pieces.iter().filter(|p| p.kind == Kind::Core).collect();
     let out = |p: &Piece| p.pull * (extent(p) + APART);
@@ -45,7 +51,7 @@ pub fn opened(mold: &Mold) -> Extra {
     };
     let level = DVec3::Z * (2.0 * mold.plan.parting);
     let mut views = vec![
-        Painted { mesh: &halves[0].mesh, colours: vec![COLOURS[0]], shift: DVec3::ZERO },
+        Painted { mesh: lower, colours: vec![COLOURS[0]], shift: DVec3::ZERO },
         Painted { mesh: &over, colours: vec![COLOURS[1]], shift: beside + level },
     ];
     views.extend(cores.iter().map(|p| Painted { mesh: &p.mesh, colours: vec![COLOURS[2]], shift: out(p) }));

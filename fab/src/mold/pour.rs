@@ -5,6 +5,7 @@
 use crate::mold::layout::{self, Around};
 use crate::mold::make::{blank, extra, finding, push, source};
 use crate::mold::prepare::Ready;
+use crate::mold::two_part::keys;
 use crate::mold::{Kind, Mold, MoldError, MoldSpec, Step, Volume, pictures, scad, silicone};
 use crate::report::Severity;
 use glam::DVec3;
@@ -25,7 +26,7 @@ pub fn mold(ready: Ready, spec: &MoldSpec) -> Result<Mold, MoldError> {
     push(&mut mold, "box-lower", Kind::BoxWall, &prints.lower_wall, DVec3::ZERO, 1);
     mold.pieces.push(source("part", Kind::Part, &mold.part));
     let [lower, upper] = silicone::pours(&prints.board, &mold.plan, &spec.figures)?;
-    for (of, solid) in [("first pour, upper half", upper), ("second pour, lower half", lower)] {
+    for (of, solid) in [("first pour, upper half", &upper), ("second pour, lower half", &lower)] {
         mold.volumes.push(silicone_volume(of, solid.volume(), spec));
     }
     mold.volumes.push(Volume { of: "cavity".into(), mm3: ready.solid.volume(), grams: None });
@@ -45,8 +46,8 @@ pub fn mold(ready: Ready, spec: &MoldSpec) -> Result<Mold, MoldError> {
     mold.steps = steps(&mold);
     mold.extras.push(pictures::maps(&mold));
     extra(&mut mold, "scad", scad::silicone);
-    let picture = pictures::prints(&mold);
-    mold.extras.push(picture);
+    let pictures = [pictures::prints(&mold), pictures::beside(&mold, &lower.mesh(), &upper.mesh())];
+    mold.extras.extend(pictures);
     Ok(mold)
 }
 
@@ -70,7 +71,10 @@ fn steps(mold: &Mold) -> Vec<Step> {
         format!("first pour: {}; let it cure as its sheet says", pour(0)),
         "turn all over, stand the lower box wall on the board, seal it".to_string(),
         format!("second pour: {}; let it cure", pour(1)),
-        "take walls and board away; the two silicone halves close on each other by their keys".to_string(),
+        format!(
+            "take walls and board away; the two silicone halves close on each other: the {}",
+            keys(mold)
+        ),
     ];
     let step =
         |does: String| Step { does, hours: None, celsius: None, source: "geometry of this mold".into() };

@@ -90,6 +90,16 @@ fn stepped(mold: &Mold, cavity: &Solid) -> Result<Option<Solid>, NotSolid> {
     parting::below((mold.plan.low, mold.plan.high), cavity, &plane, mold.snap, FAT).map(Some)
 }
 
+/// The keys of a mold, in words.
+pub fn keys(mold: &Mold) -> String {
+    let (f, tip) = (&mold.figures, rigid::KEY_TIP * mold.figures.key_diameter.value);
+    let (wide, high, air) = (f.key_diameter.value, f.key_height.value, f.key_clearance.value);
+    format!(
+        "{} keys fit one way only (cones of {wide} mm at the foot and {tip} mm at the tip, {high} mm high, with {air} mm of air)",
+        mold.plan.keys.len()
+    )
+}
+
 fn steps(mold: &Mold) -> Vec<Step> {
     let (f, plan) = (&mold.figures, &mold.plan);
     let cores: Vec<&Piece> = mold.pieces.iter().filter(|p| p.kind == Kind::Core).collect();
@@ -98,8 +108,8 @@ fn steps(mold: &Mold) -> Vec<Step> {
     let mut does = vec![
         format!("print {prints}; seal the faces of the cavity, coat them with release agent"),
         format!(
-            "close the halves: the {} keys fit one way only; screws through the {} holes of {} mm",
-            plan.keys.len(),
+            "close the halves: the {}; screws through the {} holes of {} mm",
+            keys(mold),
             plan.bolts.len(),
             f.bolt.value
         ),

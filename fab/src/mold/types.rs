@@ -278,6 +278,9 @@ pub struct MoldReport {
     pub pull: Pull,
     pub parting: Option<Parting>,
     pub filled_mm3: Option<f64>,
+    /// Draft that is asked for; 0 of silicone, which gives way.
+    pub least_draft_deg: f64,
+    /// Faces with less.
     pub low_draft_mm2: f64,
     pub pieces: Vec<WrittenPiece>,
     pub files: Vec<String>,

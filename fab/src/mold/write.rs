@@ -99,6 +99,7 @@ fn report(mold: &Mold, back: &[Mesh]) -> MoldReport {
         pull: mold.pull.clone(),
         parting: mold.parting.clone(),
         filled_mm3: mold.filled_mm3,
+        least_draft_deg: if mold.route == Route::Silicone { 0.0 } else { mold.figures.draft.value },
         low_draft_mm2: mold.maps.low_draft_mm2,
         pieces,
         files,

@@ -29,7 +29,7 @@ fn mold(m: &MoldReport) -> String {
     let d = m.pull.direction;
     let mut s = String::new();
     let opens = format!(
-        "\nOpens along ({}, {}, {}) of the part as it stands in the assembly. {} directions were looked at: {}. Undercut: {} mm2, {} mm deep. Faces with less draft than asked for: {} mm2.\n",
+        "\nOpens along ({}, {}, {}) of the part as it stands in the assembly. {} directions were looked at: {}. Undercut: {} mm2, {} mm deep. Faces with less draft than the {} degrees that are asked for: {} mm2.\n",
         short(d.x),
         short(d.y),
         short(d.z),
@@ -37,6 +37,7 @@ fn mold(m: &MoldReport) -> String {
         m.pull.search,
         short(m.pull.undercut_mm2),
         short(m.pull.undercut_reach_mm),
+        short(m.least_draft_deg),
         short(m.low_draft_mm2)
     );
     // A tree does not open.
