@@ -71,10 +71,7 @@ fn steps(mold: &Mold) -> Vec<Step> {
         format!("first pour: {}; let it cure as its sheet says", pour(0)),
         "turn all over, stand the lower box wall on the board, seal it".to_string(),
         format!("second pour: {}; let it cure", pour(1)),
-        format!(
-            "take walls and board away; the two silicone halves close on each other: the {}",
-            keys(mold)
-        ),
+        format!("take walls and board away; the two silicone halves close on each other: the {}", keys(mold)),
     ];
     let step =
         |does: String| Step { does, hours: None, celsius: None, source: "geometry of this mold".into() };
