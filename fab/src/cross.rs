@@ -150,8 +150,8 @@ fn disjoint_ids_cross(p: [DVec3; 3], q: [DVec3; 3]) -> bool {
     (0..3).any(|k| meets(edge(p, of_p, k), q) || meets(edge(q, of_q, k), p))
 }
 
-/// Whether all of `other` is on one side of the plane of `t` beyond round-off. Seven roundings of f64 in each of six
-/// products of a coordinate of each of three edges: 64 of 2^-53 bound them.
+/// Whether all of `other` is on one side of the plane of `t` beyond round-off: at most eight roundings of 2^-53 in each of six
+/// products of a coordinate of each of three edges, 48, which 64 bound with those of the bound itself.
 fn one_side(t: [DVec3; 3], other: [DVec3; 3]) -> bool {
     let (u, v) = (t[1] - t[0], t[2] - t[0]);
     let (normal, off) = (u.cross(v), 64.0 / 9_007_199_254_740_992.0 * largest(u) * largest(v));

@@ -13,7 +13,7 @@ use crate::findings;
 use crate::gap::{self, Gap, Made, Promise, Verdict};
 use crate::ledger::Scale;
 use crate::mesh::Mesh;
-use crate::mold::fins::{self, Fins, Looked};
+use crate::mold::fins::{self, Fins};
 use crate::offset::{self, Aim, Offset};
 use crate::package::laying::{Laying, again, lay};
 use crate::pinch;
@@ -399,7 +399,7 @@ fn part_report(job: &Job, pieces: &[Piece], p: usize, recipe: &Recipe, folder: &
     let (nominal, finished) = (shape.volume(), piece.master.volume() / piece.scale.factor.powi(3));
     let [stl_name, obj_name] = file_names(&piece.stem).map(|name| folder.join(name).display().to_string());
     let same = piece.offset.same_as;
-    let slots = piece.made.as_ref().map_or(NO_FINS, |m| slots(m, process));
+    let slots = piece.made.as_ref().map_or(Fins::NONE, |m| slots(m, process));
     PartReport {
         id: part.id.clone(),
         process: process.name.clone(),
@@ -424,8 +424,6 @@ fn part_report(job: &Job, pieces: &[Piece], p: usize, recipe: &Recipe, folder: &
     }
 }
 
-const NO_FINS: Fins = Fins { widest: None, looked: Looked::All };
-
 /// Slots of a printed shape that are narrower than two faces need to stay apart: fins of air.
 fn slots(made: &Made, process: &Process) -> Fins {
     let fit = 2.0 * process.clearance.value;
@@ -433,7 +431,7 @@ fn slots(made: &Made, process: &Process) -> Fins {
         triangles: made.mesh.triangles.iter().map(|t| [t[0], t[2], t[1]]).collect(),
         vertices: made.mesh.vertices.clone(),
     };
-    if process.route.prints_the_shape() { fins::fins(&turned, &made.tree, fit) } else { NO_FINS }
+    if process.route.prints_the_shape() { fins::fins(&turned, &made.tree, fit) } else { Fins::NONE }
 }
 
 fn contact_area(job: &Job, p: usize) -> f64 {

@@ -31,6 +31,11 @@ pub struct Fins {
     pub looked: Looked,
 }
 
+impl Fins {
+    /// Of what has none, or is not printed.
+    pub const NONE: Fins = Fins { widest: None, looked: Looked::All };
+}
+
 /// How much of a piece was looked at.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]

@@ -59,7 +59,12 @@ pub struct Aside {
 
 /// `plain`: the cavity without undercuts.
 pub fn aside(mold: &Mold, plain: &Solid) -> Result<Aside, NotSolid> {
-    let settled = |s: Option<Solid>| s.map(|s| (stl::settled(&s), s)).map(|(settled, s)| (s, settled));
+    let settled = |s: Option<Solid>| {
+        s.map(|s| {
+            let mesh = stl::settled(&s);
+            (s, mesh)
+        })
+    };
     let (below, maps) = rayon::join(|| stepped(mold, plain).map(settled), || pictures::maps(mold));
     Ok(Aside { below: below?, maps })
 }

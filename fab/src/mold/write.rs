@@ -62,9 +62,9 @@ fn of_measure(mold: &Mold, m: &Measured) -> Finding {
 
 fn report(mold: &Mold, back: &[Mesh]) -> MoldReport {
     let least = mold.figures.least_wall.value;
-    let none = Fins { widest: None, looked: Looked::All };
-    let fins =
-        |(p, m): (&Piece, &Mesh)| if p.kind.is_printed() { fins::fins(m, &Bvh::new(m), least) } else { none };
+    let fins = |(p, m): (&Piece, &Mesh)| {
+        if p.kind.is_printed() { fins::fins(m, &Bvh::new(m), least) } else { Fins::NONE }
+    };
     let all: Vec<Fins> = mold.pieces.iter().zip(back).map(fins).collect();
     let piece = |((p, m), fins): ((&Piece, &Mesh), &Fins)| WrittenPiece {
         name: p.name.clone(),
