@@ -47,7 +47,7 @@ impl Solid {
             raw.vert_properties.chunks_exact(stride).map(|c| DVec3::new(c[0], c[1], c[2])).collect();
         let triangles =
             raw.tri_verts.chunks_exact(3).map(|t| [t[0] as u32, t[1] as u32, t[2] as u32]).collect();
-        Mesh { vertices, triangles }
+        in_order(&Mesh { vertices, triangles })
     }
 
     /// Of what its surface encloses, never negative: also for a hollow taken for itself.
@@ -136,6 +136,39 @@ impl Solid {
     }
 }
 
+/// The mesh with its triangles in the order of their corners' coordinates, and vertices in the order of their first use: the
+/// kernel's own order is that in which its solids were made, and those are made on all threads.
+fn in_order(mesh: &Mesh) -> Mesh {
+    let key = |t: [u32; 3]| t.map(|v| mesh.vertices[v as usize].to_array());
+    let less = |a: &[f64], b: &[f64]| {
+        let differ = a.iter().zip(b).map(|(x, y)| x.total_cmp(y)).find(|o| o.is_ne());
+        differ.unwrap_or(std::cmp::Ordering::Equal)
+    };
+    let mut ordered: Vec<([u32; 3], [[f64; 3]; 3])> = mesh
+        .triangles
+        .iter()
+        .map(|&t| {
+            let k = key(t);
+            let first = (0..3).min_by(|&i, &j| less(&k[i], &k[j])).unwrap_or(0);
+            let turned = std::array::from_fn(|i| t[(first + i) % 3]);
+            (turned, key(turned))
+        })
+        .collect();
+    ordered.sort_by(|a, b| less(a.1.as_flattened(), b.1.as_flattened()));
+    let mut number = vec![u32::MAX; mesh.vertices.len()];
+    let mut vertices = Vec::with_capacity(mesh.vertices.len());
+    let mut of = |v: u32| {
+        let n = &mut number[v as usize];
+        if *n == u32::MAX {
+            *n = vertices.len() as u32;
+            vertices.push(mesh.vertices[v as usize]);
+        }
+        *n
+    };
+    let triangles = ordered.into_iter().map(|(t, _)| t.map(&mut of)).collect();
+    Mesh { vertices, triangles }
+}
+
 /// Triangles over the points of closed loops (outer ones counter-clockwise, holes clockwise), numbered through all loops.
 pub fn fill(loops: &[Vec<DVec2>]) -> Vec<[u32; 3]> {
     let mut next = 0;
@@ -209,6 +242,15 @@ pub fn cuboid(lo: DVec3, hi: DVec3) -> Mesh {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_mesh_does_not_tell_in_which_order_its_solids_were_made() {
+        let cube = |from: f64, to: f64| Solid::of(&cuboid(DVec3::splat(from), DVec3::splat(to))).unwrap();
+        let (a, b) = (cube(0.0, 2.0), cube(1.0, 3.0));
+        let first = a.with(&b).mesh();
+        let (b, a) = (cube(1.0, 3.0), cube(0.0, 2.0));
+        assert_eq!(a.with(&b).mesh(), first);
+    }
 
     #[test]
     fn hollows_are_filled_and_what_stands_in_them_is_swallowed() {
