@@ -10,6 +10,7 @@
 
 pub mod bvh;
 pub mod check;
+pub mod congruent;
 pub mod coupon;
 pub mod cross;
 mod ears;

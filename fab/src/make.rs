@@ -6,6 +6,7 @@
 
 use crate::bvh::Bvh;
 use crate::check::Programs;
+use crate::congruent;
 use crate::cross;
 use crate::external;
 use crate::files::{Batch, FileError, obj, stems, stl};
@@ -173,10 +174,11 @@ pub fn output(job: &Job, recipe: &Recipe, folder: &Path) -> Result<Output, FabEr
     if !faults.is_empty() {
         return Err(FabError::Job(faults));
     }
-    let job = &job.planar();
     let scales: Vec<Scale> =
         job.parts.iter().map(|p| Scale::of(recipe.process_of(&p.id), recipe.datum)).collect();
     let snap = snap_finished(job, &scales);
+    // Parts that no file can tell apart are one solid; what this shifts a face by, `relief` makes up for.
+    let job = &congruent::united(job, snap).planar();
     let mut pieces = pieces(job, recipe, snap, scales);
     let mut batch = Batch::new(folder)?;
     for piece in &mut pieces {
@@ -235,28 +237,36 @@ fn pieces(job: &Job, recipe: &Recipe, snap: f64, scales: Vec<Scale>) -> Vec<Piec
             best = again;
         }
     }
-    best.par_iter_mut().enumerate().for_each(|(p, piece)| {
-        carve(job, p, aims[p].depth, piece);
-        shave(recipe.process_of(&job.parts[p].id), piece);
-    });
+    let carved: Vec<bool> =
+        best.par_iter_mut().enumerate().map(|(p, piece)| carve(job, p, aims[p].depth, piece)).collect();
+    let roots: Vec<usize> = best.iter().map(|p| p.offset.same_as).collect();
+    for (p, piece) in best.iter_mut().enumerate() {
+        // Carved or moved, and so alike, only with those that the same was done to.
+        let alike = |q: &usize| roots[*q] == roots[p] && carved[*q] == carved[p];
+        piece.offset.same_as = (0..p).find(alike).unwrap_or(p);
+    }
+    best.par_iter_mut().zip(&job.parts).for_each(|(piece, p)| shave(recipe.process_of(&p.id), piece));
     best
 }
 
-/// The fallback: the part less a block around each contact facet, where no move was found.
-fn carve(job: &Job, p: usize, depth: f64, failed: &mut Piece) {
+/// The fallback: the part less a block around each contact facet, where no move was found; whether it was taken.
+fn carve(job: &Job, p: usize, depth: f64, failed: &mut Piece) -> bool {
     if failed.faults.is_empty() {
-        return;
+        return false;
     }
     let part = &job.parts[p];
     let contact: Vec<bool> = part.roles.iter().map(|r| *r != Role::Outer).collect();
-    let Ok(Some(mesh)) = offset::carve::carve(&job.shapes[part.shape], &contact, depth) else { return };
+    let Ok(Some(mesh)) = offset::carve::carve(&job.shapes[part.shape], &contact, depth) else { return false };
     let mesh = mesh.map(|v| part.pose.transform_point3(v));
-    let offset = Offset { mesh, collapses: 0, longest_move: depth * CORNER, same_as: p, failures: vec![] };
+    let same_as = failed.offset.same_as;
+    let offset = Offset { mesh, collapses: 0, longest_move: depth * CORNER, same_as, failures: vec![] };
     let mut carved = piece(&failed.id, failed.stem.clone(), offset, failed.scale.clone());
-    if carved.faults.is_empty() {
+    let sound = carved.faults.is_empty();
+    if sound {
         carved.notes.push(findings::of_carving(&failed.id, &failed.faults));
         *failed = carved;
     }
+    sound
 }
 
 /// How far carving goes at a corner, in depths: along the diagonal of a square.

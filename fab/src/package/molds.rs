@@ -25,8 +25,9 @@ pub struct MoldSheet {
     /// The parts that it serves.
     pub parts: Vec<String>,
     pub process: String,
-    /// Castings at once.
+    /// Castings at once, and how often it is filled so that each of the parts has one.
     pub castings: usize,
+    pub pours: usize,
     #[serde(flatten)]
     pub report: MoldReport,
 }
@@ -90,6 +91,7 @@ pub fn molds(
                         parts: parts.clone(),
                         process: part.process.clone(),
                         castings: count,
+                        pours: parts.len().div_ceil(count.max(1)),
                         report,
                     };
                     keep(package, sheet);
