@@ -6,7 +6,6 @@ use super::molds::use_of;
 use super::table::{range, short, table, value};
 use crate::make::MM3_IN_CM3;
 use crate::mold::Volume;
-use crate::package::poured::CASTING;
 use crate::package::{MoldSheet, PackageReport};
 use crate::process::{Instruction, Route};
 use crate::report::RouteReport;
@@ -113,7 +112,7 @@ pub fn pour(p: &PackageReport) -> Option<String> {
 
 /// What is poured once and with each filling; a cavity without a mass is only to compare with.
 fn volume(m: &MoldSheet, v: &Volume) -> Vec<String> {
-    let times = if v.of.starts_with(CASTING) { m.pours } else { 1 };
+    let times = m.times(v);
     let cm3 = if v.mm3 > 0.0 { short(v.mm3 / MM3_IN_CM3) } else { String::new() };
     let grams = |times: usize| v.grams.map_or(String::new(), |g| format!("{:.1}", g * times as f64));
     let count = v.grams.map_or(String::new(), |_| times.to_string());

@@ -41,7 +41,8 @@ pub fn use_of(m: &MoldSheet) -> String {
     };
     match (m.report.route, m.castings, m.pours) {
         (Route::LostWax, 1, _) => "The tree holds its pattern.".to_string(),
-        (Route::LostWax, n, _) => format!("{same}The tree holds all {n} patterns."),
+        (Route::LostWax, n, 1) => format!("{same}The tree holds all {n} patterns."),
+        (Route::LostWax, n, t) => format!("{same}{t} trees of {n} patterns each, in a flask each{spare}."),
         (_, 1, 1) => "It is filled once.".to_string(),
         (_, 1, n) => format!("{same}It is made once and filled {n} times."),
         (_, k, 1) => format!("{same}It is filled once, {k} castings at once{spare}."),
