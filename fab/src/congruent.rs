@@ -20,6 +20,11 @@ struct Marked<'a> {
     /// The facet left of each edge, and the edge's number in it.
     left: HashMap<(u32, u32), (usize, usize)>,
     perimeters: Vec<f64>,
+    /// The facet that is longest around.
+    longest: usize,
+    /// mm3, and mm2.
+    volume: f64,
+    area: f64,
 }
 
 /// How a solid lies on another.
@@ -41,16 +46,7 @@ pub fn united(job: &Job, off: f64) -> Job {
             firsts.len() - 1
         });
     }
-    let marked: Vec<Marked> = firsts.iter().map(|&p| Marked::new(job, &job.parts[p])).collect();
-    let mut roots: Vec<usize> = Vec::new();
-    let mut lies: Vec<Option<(usize, Match)>> = Vec::new();
-    for k in 0..marked.len() {
-        let on = roots.iter().find_map(|&r| Some((r, matched(&marked[r], &marked[k], off)?)));
-        if on.is_none() {
-            roots.push(k);
-        }
-        lies.push(on);
-    }
+    let lies = lies(job, &firsts, off);
     let part = |p: &PlacedPart| match &lies[kinds[&key(p)]] {
         None => p.clone(),
         Some((root, found)) => PlacedPart {
@@ -61,6 +57,30 @@ pub fn united(job: &Job, off: f64) -> Job {
         },
     };
     Job { name: job.name.clone(), shapes: job.shapes.clone(), parts: job.parts.iter().map(part).collect() }
+}
+
+/// For each of these parts the first among them that it is congruent to, and how it lies on it; `None` for that first.
+fn lies(job: &Job, firsts: &[usize], off: f64) -> Vec<Option<(usize, Match)>> {
+    let count = |k: usize| {
+        let part = &job.parts[firsts[k]];
+        let (shape, touching) = (&job.shapes[part.shape], part.roles.iter().filter(|r| **r != Role::Outer));
+        (shape.facets.len(), shape.vertices.len(), touching.count())
+    };
+    let mut alike: BTreeMap<(usize, usize, usize), Vec<usize>> = BTreeMap::new();
+    (0..firsts.len()).for_each(|k| alike.entry(count(k)).or_default().push(k));
+    let mut lies: Vec<Option<(usize, Match)>> = firsts.iter().map(|_| None).collect();
+    // What is alone has nothing to be laid on: large meshes are mostly that.
+    for group in alike.values().filter(|g| g.len() > 1) {
+        let mut roots: Vec<(usize, Marked)> = Vec::new();
+        for &k in group {
+            let marked = Marked::new(job, &job.parts[firsts[k]]);
+            lies[k] = roots.iter().find_map(|(r, root)| Some((*r, matched(root, &marked, off)?)));
+            if lies[k].is_none() {
+                roots.push((k, marked));
+            }
+        }
+    }
+    lies
 }
 
 fn contacts(p: &PlacedPart) -> Vec<bool> {
@@ -75,8 +95,11 @@ impl<'a> Marked<'a> {
             (0..shape.facets.len()).flat_map(edges).map(|(f, k)| (edge(shape, f, k), (f, k))).collect();
         let long = |(a, b): (u32, u32)| shape.vertices[a as usize].distance(shape.vertices[b as usize]);
         let around = |f: usize| edges(f).map(|(f, k)| long(edge(shape, f, k))).sum();
-        let perimeters = (0..shape.facets.len()).map(around).collect();
-        Marked { shape, contact: contacts(part), left, perimeters }
+        let facets = 0..shape.facets.len();
+        let perimeters: Vec<f64> = facets.clone().map(around).collect();
+        let longest = facets.clone().max_by(|&f, &g| perimeters[f].total_cmp(&perimeters[g])).unwrap_or(0);
+        let area = facets.map(|f| shape.facet_area(f)).sum();
+        Marked { shape, contact: contacts(part), left, perimeters, longest, volume: shape.volume(), area }
     }
 
     fn sides(&self, f: usize) -> usize {
@@ -106,14 +129,13 @@ fn edge(shape: &Shape, f: usize, k: usize) -> (u32, u32) {
     (c[k], c[(k + 1) % c.len()])
 }
 
-/// The proper rigid motion that lays `a` on `b`, if one is found.
+/// The proper rigid motion that lays `a` on `b`, of as many facets and corners, if one is found.
 fn matched(a: &Marked, b: &Marked, off: f64) -> Option<Match> {
-    let count =
-        |m: &Marked| (m.shape.facets.len(), m.shape.vertices.len(), m.contact.iter().filter(|c| **c).count());
-    if count(a) != count(b) {
+    // A layer of what each may be off, all over.
+    if (a.volume - b.volume).abs() > 2.0 * off * (a.area + b.area) {
         return None;
     }
-    let longest = (0..a.shape.facets.len()).max_by(|&f, &g| a.perimeters[f].total_cmp(&a.perimeters[g]))?;
+    let longest = a.longest;
     // Each end of each edge may be off.
     let slack = 2.0 * off * a.sides(longest) as f64;
     let near =

@@ -26,6 +26,7 @@ pub mod near;
 pub mod offset;
 pub mod package;
 pub mod pinch;
+mod print_face;
 pub mod process;
 pub mod report;
 pub mod shape;

@@ -16,12 +16,13 @@ use crate::ledger::Scale;
 use crate::mesh::Mesh;
 use crate::mold::fins::{self, Fins};
 use crate::offset::{self, Aim, Offset};
-use crate::package::laying::{Laying, again, lay};
+use crate::package::laying::Laying;
 use crate::pinch;
+use crate::print_face;
 use crate::process::Process;
 use crate::report::{Finding, PartReport, ReadBack, Report, RouteReport};
 use crate::shape::{Fault, Job, Role};
-use crate::shave::{self, Shaving};
+use crate::shave::Shaving;
 use crate::wall;
 use glam::DVec3;
 use rayon::prelude::*;
@@ -178,7 +179,7 @@ pub fn output(job: &Job, recipe: &Recipe, folder: &Path) -> Result<Output, FabEr
         job.parts.iter().map(|p| Scale::of(recipe.process_of(&p.id), recipe.datum)).collect();
     let snap = snap_finished(job, &scales);
     // Parts that no file can tell apart are one solid; what this shifts a face by, `relief` makes up for.
-    let job = &congruent::united(job, snap).planar();
+    let job = &congruent::united(&job.planar(), snap);
     let mut pieces = pieces(job, recipe, snap, scales);
     let mut batch = Batch::new(folder)?;
     for piece in &mut pieces {
@@ -240,12 +241,14 @@ fn pieces(job: &Job, recipe: &Recipe, snap: f64, scales: Vec<Scale>) -> Vec<Piec
     let carved: Vec<bool> =
         best.par_iter_mut().enumerate().map(|(p, piece)| carve(job, p, aims[p].depth, piece)).collect();
     let roots: Vec<usize> = best.iter().map(|p| p.offset.same_as).collect();
+    let shavings: Vec<Option<Shaving>> =
+        job.parts.iter().map(|p| print_face::shaving(recipe.process_of(&p.id))).collect();
     for (p, piece) in best.iter_mut().enumerate() {
-        // Carved or moved, and so alike, only with those that the same was done to.
-        let alike = |q: &usize| roots[*q] == roots[p] && carved[*q] == carved[p];
-        piece.offset.same_as = (0..p).find(alike).unwrap_or(p);
+        // Alike only with those that the same is done to.
+        let done = |q: usize| (roots[q], carved[q], shavings[q]);
+        piece.offset.same_as = (0..p).find(|&q| done(q) == done(p)).unwrap_or(p);
     }
-    best.par_iter_mut().zip(&job.parts).for_each(|(piece, p)| shave(recipe.process_of(&p.id), piece));
+    print_face::shave(job, &shavings, &mut best);
     best
 }
 
@@ -271,23 +274,6 @@ fn carve(job: &Job, p: usize, depth: f64, failed: &mut Piece) -> bool {
 
 /// How far carving goes at a corner, in depths: along the diagonal of a square.
 const CORNER: f64 = std::f64::consts::SQRT_2;
-
-/// Slice and chamfer of what is printed in the part's own shape.
-fn shave(process: &Process, piece: &mut Piece) {
-    let print = &process.print;
-    let what = Shaving { flatten: print.flatten.value, chamfer: print.elephant_foot.value };
-    if what.is_off() || !process.route.prints_the_shape() || !piece.faults.is_empty() {
-        return;
-    }
-    let laying = lay(&piece.master);
-    match shave::shaved(&piece.master, &laying, what) {
-        Ok(master) => {
-            piece.faults.extend(findings::of_mesh(&piece.id, &master, &piece.scale));
-            (piece.laid, piece.master) = (Some(again(&master, &laying)), master);
-        }
-        Err(why) => piece.notes.push(findings::of_shaving(&piece.id, &why)),
-    }
-}
 
 /// Where the exact move fails, edges so many times longer are united first, and so many times: 0.02, 0.08, 0.32 and 1.28
 /// of the depth. What a weld costs in clearance `relief` mends, and the gap is measured all the same.
@@ -417,8 +403,9 @@ fn part_report(job: &Job, pieces: &[Piece], p: usize, recipe: &Recipe, folder: &
         clearance_mm: process.clearance.value,
         file: piece.made.as_ref().map(|_| stl_name),
         obj: piece.made.as_ref().filter(|_| recipe.obj).map(|_| obj_name),
-        // Congruent parts may have been laid on different faces to be shaved.
-        same_as: (same != p && piece.laid.is_none()).then(|| job.parts[same].id.clone()),
+        // One of them may have been shaved and the other not.
+        same_as: (same != p && piece.laid.is_some() == pieces[same].laid.is_some())
+            .then(|| job.parts[same].id.clone()),
         read_back: piece.made.as_ref().map(|_| ReadBack::of(&piece.master)).unwrap_or_default(),
         expected_volume_mm3: piece.master.volume(),
         nominal_volume_mm3: nominal,

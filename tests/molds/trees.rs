@@ -16,7 +16,7 @@ fn patterns_that_do_not_fit_go_on_further_trees() {
         high.z - low.z
     };
     let all = tree(5, &figures);
-    assert!(all.castings == 5 && all.findings.is_empty(), "{:?}", all.findings);
+    assert!(all.castings == 5 && !all.findings.iter().any(|f| f.what.contains("the flask is")));
     let many = tree(40, &figures);
     let trees = 40usize.div_ceil(many.castings);
     assert!(
@@ -68,9 +68,10 @@ fn the_picture_of_a_tree_shows_it_with_flask_and_investment_cut_open() {
         let third = at % info.width as usize * 3 / info.width as usize;
         SHOWN.iter().enumerate().filter(|(_, s)| lit(pixel, s.1)).for_each(|(k, _)| seen[k][third] += 1);
     }
-    // A view is a third of the picture: what is shown in it fills a hundredth of that, what is not has stray mixed pixels.
+    // A view is a third of the picture: what is shown in it, gates too, fills more than a thousandth of that; what is not, no
+    // more than pixels on borders that are a mean of others.
     let view = (info.width * info.height) as usize / 3;
-    let shown = seen.map(|n| n.map(|n| n > view / 100));
+    let shown = seen.map(|n| n.map(|n| n > view / 1000));
     let expected = [
         [true, true, false],
         [true, true, false],

@@ -89,6 +89,60 @@ fn a_tree_holds_the_patterns_of_all_equal_parts() {
     assert!((metal / 1.1 - bare - 4.0 * pattern).abs() < 1e-3 * pattern, "{metal} {bare} {pattern}");
 }
 
+/// What is done to print faces is done to all of a solid alike: they lie on the same face, and still share a mold.
+#[test]
+fn parts_whose_print_faces_are_cut_stay_one_solid() {
+    let at = room("cut-alike");
+    let answer = fab(&at, "p", &["--process", "pu-resin", "--flatten", "0.5 mm"]);
+    let [mold] = &list(&answer, "mold_sheets")[..] else { panic!("{}", answer["mold_sheets"]) };
+    assert_eq!(words(&mold["parts"]), ALL);
+    let volumes: Vec<f64> = list(&answer, "parts").iter().map(|p| number(&p["volume_mm3"])).collect();
+    // Each was cut in its own place and rounded to f32 there.
+    assert!(volumes.iter().all(|v| (v / volumes[0] - 1.0).abs() < 1e-6), "{volumes:?}");
+    assert_eq!(list(&answer, "layings").len(), 1);
+}
+
+/// A finding on a solid names all parts that it is.
+#[test]
+fn what_is_told_of_a_solid_names_every_part_of_it() {
+    let at = room("named");
+    let answer = fab(&at, "p", &["--process", "fdm-pla"]);
+    let flat = list(&answer, "findings").iter().find(|f| f["what"] == "no flat face to stand on");
+    assert_eq!(words(&flat.expect("told")["place"]["parts"]), ALL);
+}
+
+/// Meshes of two files, one turned and with its facets in another order, are one solid; a mirror image is not.
+#[test]
+fn imported_meshes_that_are_equal_by_chance_share_a_mold() {
+    let at = room("imported");
+    // A wedge without any symmetry, standing apart in three places.
+    let corners = [[0., 0., 0.], [30., 0., 0.], [0., 20., 0.], [0., 0., 15.], [12., 0., 15.]];
+    let facets = [[0, 2, 1], [0, 1, 4], [0, 4, 3], [1, 2, 4], [2, 3, 4], [0, 3, 2]];
+    let obj = |place: &dyn Fn([f64; 3]) -> [f64; 3], facets: Vec<[usize; 3]>| {
+        let v = corners.map(place).map(|[x, y, z]| format!("v {x} {y} {z}\n")).concat();
+        v + &facets.iter().map(|[a, b, c]| format!("f {} {} {}\n", a + 1, b + 1, c + 1)).collect::<String>()
+    };
+    let turned = facets.iter().rev().map(|[a, b, c]| [*b, *c, *a]).collect();
+    let mirrored = facets.iter().map(|[a, b, c]| [*a, *c, *b]).collect();
+    for (name, text) in [
+        ("a", obj(&|p| p, facets.to_vec())),
+        ("b", obj(&|[x, y, z]| [100.0 - y, x, z], turned)),
+        ("c", obj(&|[x, y, z]| [-100.0 - x, y, z], mirrored)),
+    ] {
+        fs::write(at.join(format!("{name}.obj")), text).expect("writable");
+    }
+    let part = |id: &str| format!("[[part]]\nid = \"{id}\"\nmesh = \"{id}.obj\"\n");
+    let spec = format!("name = \"wedges\"\n{}[size]\nunit = \"mm\"\n", ["a", "b", "c"].map(part).concat());
+    fs::write(at.join("wedges.toml"), spec).expect("writable");
+    let out = super::ran(
+        &["fab", "wedges.toml", "--process", "silicone-platinum", "--out", "p", "--json", "-q"],
+        &at,
+    );
+    let answer: Value = serde_json::from_slice(&out.stdout).unwrap_or_else(|_| panic!("{}", said(&out)));
+    let molds: Vec<Vec<&str>> = list(&answer, "mold_sheets").iter().map(|m| words(&m["parts"])).collect();
+    assert_eq!(molds, [vec!["a", "b"], vec!["c"]], "{}", said(&out));
+}
+
 /// Air of one process among several; a figure that names the process comes before one for all.
 #[test]
 fn each_process_has_its_own_air() {

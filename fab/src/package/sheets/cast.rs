@@ -25,7 +25,7 @@ pub fn sheet(p: &PackageReport) -> Option<String> {
         s += &format!("\n## {} ({})\n\nParts: {}.\n", r.process.title, r.process.name, r.parts.join(", "));
         if let Some(c) = &r.process.cavity {
             s += &format!(
-                "\nPoured at {} into {}, which bears {} ({}, grade {}).{}\n",
+                "\nPoured at {} into {}, which bears {} ({}, grade {}){}.\n",
                 value(&c.pour),
                 c.material,
                 value(&c.bears),
@@ -54,7 +54,7 @@ fn liquid(r: &RouteReport) -> String {
         let (material, grade) = (&r.process.material, f.grade.sign());
         let upto =
             if f.high > f.low { format!(", by its grade up to {} \u{b0}C", f.high) } else { String::new() };
-        format!(" {material} is liquid from {} \u{b0}C{upto} ({}, grade {grade}).", f.low, f.source)
+        format!("; {material} is liquid from {} \u{b0}C{upto} ({}, grade {grade})", f.low, f.source)
     };
     known.map_or(String::new(), said)
 }
