@@ -12,8 +12,10 @@ parting = @parting@;
 
 /* [Cores] */
 core_names = @core_names@;
-// Each core with all the room that it takes: all air of the part that the halves do not reach.
+// Each core with all the room that it takes: all air of the part that the halves do not reach. Empty where that room
+// touches itself: there the core is taken as it is.
 core_rooms = @core_rooms@;
+core_files = @core_files@;
 core_pulls = @core_pulls@;
 // How far "all" draws them out, mm.
 out = 60;
@@ -67,7 +69,11 @@ module bolts() for (b = bolts)
 
 module below() if (below == "") box(low, [high[0], high[1], parting]); else translate(aside) import(below, convexity = 20);
 
-module cores() for (f = core_rooms) translate(aside) import(f, convexity = 20);
+// A core as it is meets the part in its own walls; taken on all sides of its place it leaves no skin there.
+module cores() for (k = [0:len(core_rooms) - 1])
+    if (core_rooms[k] == "") for (s = [[1, 1, 1], [1, -1, -1], [-1, 1, -1], [-1, -1, 1]])
+        translate(4 * [for (i = [0:2]) s[i] * aside[i]]) import(core_files[k], convexity = 20);
+    else translate(aside) import(core_rooms[k], convexity = 20);
 
 module lower() difference() {
     union() {
@@ -90,7 +96,8 @@ module upper() difference() {
     cores();
 }
 
-module core(k) difference() { translate(aside) import(core_rooms[k], convexity = 20); import(part, convexity = 20); }
+module core(k) if (core_rooms[k] == "") import(core_files[k], convexity = 20);
+else difference() { translate(aside) import(core_rooms[k], convexity = 20); import(part, convexity = 20); }
 
 if (half == "lower" || half == "all") lower();
 if (half == "upper") upper();

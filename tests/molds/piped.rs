@@ -29,7 +29,7 @@ fn bored_tee() -> Mesh {
     outside.minus(&rod(8.0, -13.0, 13.0, x)).minus(&rod(6.0, 0.0, 25.0, z)).mesh()
 }
 
-fn cross() -> Mesh {
+pub fn cross() -> Mesh {
     let outside = rod(10.0, -30.0, 30.0, x).with(&rod(10.0, -30.0, 30.0, y));
     outside.minus(&rod(6.0, -31.0, 31.0, x)).minus(&rod(6.0, -31.0, 31.0, y)).mesh()
 }
@@ -38,7 +38,7 @@ fn cross() -> Mesh {
 /// along straight ways: what is beyond the upright bore can leave only through it, along x; the core that goes there sweeps
 /// over all of the lying bore's width, and cuts what is below that bore off from the upright one, in two pieces that meet in
 /// a line. Those can leave only upwards, after both, without a grip of their own.
-fn elbow() -> Mesh {
+pub fn elbow() -> Mesh {
     let corner = solid(&cuboid(DVec3::splat(-10.0), DVec3::splat(10.0)));
     let outside = Solid::all(vec![corner, rod(10.0, 0.0, 30.0, x), rod(10.0, 0.0, 30.0, z)]);
     outside.minus(&rod(6.0, -6.0, 31.0, x)).minus(&rod(6.0, -6.0, 31.0, z)).mesh()

@@ -2,6 +2,7 @@
 //!
 //! Slow: its kernel takes seconds over each half. Where it is not installed, a word is printed and nothing is shown.
 
+use super::piped::{cross, elbow};
 use super::whole::lone_spec;
 use super::{angle, bobbin, bracket, holed, scratch, spec, wavy, written};
 use std::process::Command;
@@ -33,6 +34,7 @@ fn agreed(mold: &Mold) -> usize {
     for check in report.pieces.iter().flat_map(|p| &p.checks) {
         match &check.outcome {
             Outcome::NotRun(why) if why.contains("not installed") => eprintln!("not run: {why}"),
+            Outcome::NotRun(why) if why.contains("as it is") => (),
             other => {
                 assert_eq!(*other, Outcome::Passed, "{}: {}", mold.name, check.of);
                 passed += 1;
@@ -62,6 +64,18 @@ fn openscad_makes_the_same_side_cores() {
         assert!(mold.pieces.iter().any(|p| p.kind == Kind::Core), "{name}");
         let passed = agreed(&mold);
         assert!(passed == 0 || passed >= 3, "{name}: {passed} pieces");
+    }
+}
+
+/// Bores that touch each other's ends and walls: their cores' rooms touch themselves, and a source is there all the same.
+#[test]
+#[ignore = "a minute: side cores are searched, and OpenSCAD makes the halves"]
+fn openscad_makes_the_same_halves_around_cores_that_touch() {
+    for (name, part) in [("scad-cross", cross()), ("scad-elbow", elbow())] {
+        let mold = make(&part, &spec(name, Route::Rigid)).unwrap();
+        assert!(mold.extras.iter().any(|e| e.name == format!("{name}.scad")), "{name}: {:#?}", mold.findings);
+        let passed = agreed(&mold);
+        assert!(passed == 0 || passed >= 2, "{name}: {passed} pieces");
     }
 }
 

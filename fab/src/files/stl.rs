@@ -51,7 +51,7 @@ pub fn on_grid(mesh: &Mesh) -> Mesh {
 
 /// The solid as STL can hold it on `GRID`, of the same shape, closed and without triangles that cross or have no area: detail that
 /// f32 can not hold apart is united, beginning at `FINEST` snaps and doubling until the file is so; and the size of that
-/// detail in mm. Where none up to `COARSEST` does, the first that is closed, though other kernels may refuse it; else
+/// detail in mm. Where none up to `COARSEST` does, the first of that shape, though other kernels may refuse it; else
 /// `None`.
 pub fn settled(solid: &Solid) -> Option<(Mesh, f64)> {
     let mut closed = None;
@@ -59,7 +59,9 @@ pub fn settled(solid: &Solid) -> Option<(Mesh, f64)> {
         if let Some(plain) = plain(solid, &candidate) {
             return Some(plain);
         }
-        closed.get_or_insert((candidate.mesh, candidate.size));
+        if closed.is_none() && (candidate.by == By::Moving || same(solid, &candidate.mesh, candidate.size)) {
+            closed = Some((candidate.mesh, candidate.size));
+        }
     }
     closed
 }

@@ -64,13 +64,21 @@ pub fn filled(ready: &Ready) -> Result<Solid, NotSolid> {
 /// Shafts and curtains end this far from what they must pass, mm, so that no face of theirs lies in one of the part.
 const BEYOND: f64 = 1.0;
 
+/// What becomes of undercut air that only round-off leaves beside a core.
+#[derive(Clone, Copy, PartialEq)]
+pub enum Skins {
+    Kept,
+    /// Cores count as a little wider than they are: skins along their walls are nobody's.
+    Passed,
+}
+
 /// `tan`: of the draft of cores. `block`: corners of the mold's block. A core may stand behind another's place, and
 /// leave through it: then it has no grip outside.
 pub fn cores(
     ready: &Ready,
     filled: &Solid,
     block: (DVec3, DVec3),
-    tan: f64,
+    (tan, skins): (f64, Skins),
 ) -> Result<Option<Cored>, NotSolid> {
     let part = &ready.framed.mesh;
     let enough = NOTHING * ready.solid.volume();
@@ -87,7 +95,11 @@ pub fn cores(
         let room = cores.iter().fold(room, |c, earlier| c.minus(&earlier.room));
         let found = apart(&room, &view, enough);
         let before = left.volume();
-        left = found.iter().fold(left, |l, core| l.minus(&core.room)).thick(FINE);
+        let passed = |room: &Solid| match skins {
+            Skins::Kept => room.clone(),
+            Skins::Passed => widened(room, view.turn, &AROUND),
+        };
+        left = found.iter().fold(left, |l, core| l.minus(&passed(&core.room))).thick(FINE);
         if before - left.volume() <= enough {
             break;
         }
@@ -178,11 +190,19 @@ fn cleared(shaft: &Solid, shade: &Solid, turn: DMat3) -> Solid {
     if stl::uncrossed(&plain).is_some() {
         return plain;
     }
-    let moved = |by: DVec3| shade.moved(turn.transpose() * by);
-    let wide = [DVec3::X, DVec3::Y].map(|a| moved(a * ASIDE).with(&moved(a * -ASIDE)));
-    let [x, y] = wide.map(|w| shaft.minus(&shade.with(&w)).thick(FINE));
-    [x, y].into_iter().find(|s| stl::uncrossed(s).is_some()).unwrap_or(plain)
+    let wide = [DVec3::X, DVec3::Y].map(|a| shaft.minus(&widened(shade, turn, &[a, -a])).thick(FINE));
+    wide.into_iter().find(|s| stl::uncrossed(s).is_some()).unwrap_or(plain)
 }
+
+/// A solid with copies of it a little aside, in ways seen where `turn` sets its direction upright: walls along that direction
+/// which only round-off holds apart are passed.
+fn widened(solid: &Solid, turn: DMat3, ways: &[DVec3]) -> Solid {
+    let aside = ways.iter().map(|&a| solid.moved(turn.transpose() * a * ASIDE));
+    Solid::all(std::iter::once(solid.clone()).chain(aside).collect())
+}
+
+/// Four ways square to z.
+const AROUND: [DVec3; 4] = [DVec3::X, DVec3::NEG_X, DVec3::Y, DVec3::NEG_Y];
 
 /// By how much, mm: eighty steps of the grid of molds, a hundredth of the finest layer.
 const ASIDE: f64 = 80.0 * stl::GRID;

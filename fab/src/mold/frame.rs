@@ -37,10 +37,23 @@ fn on_axis(d: DVec3) -> DVec3 {
     if (d - axis).length() < AXIS_ROUND_OFF { axis } else { d }
 }
 
-pub fn framed(part: &Mesh, pull: DVec3) -> Framed {
+/// What of a part lies square to x and y.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Footprint {
+    /// The smallest rectangle around it.
+    Smallest,
+    /// Its walls: then walls that run along a bore lie exactly along it, also after rounding.
+    Walls,
+}
+
+pub fn framed(part: &Mesh, pull: DVec3, footprint: Footprint) -> Framed {
     let upright = upright(pull);
-    let points: Vec<DVec2> = part.vertices.iter().map(|&v| flat(upright * v)).collect();
-    let (sin, cos) = squared(&hull(points)).sin_cos();
+    let turned = part.map(|v| upright * v);
+    let angle = match footprint {
+        Footprint::Smallest => squared(&hull(turned.vertices.iter().map(|&v| flat(v)).collect())),
+        Footprint::Walls => walls(&turned),
+    };
+    let (sin, cos) = angle.sin_cos();
     let turn = if sin == 0.0 {
         upright
     } else {
@@ -94,6 +107,30 @@ fn squared(hull: &[DVec2]) -> f64 {
     let best = edges.map(|a| (area(a), a)).min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)));
     best.filter(|b| b.0 < area(0.0) * (1.0 - WORTH_TURNING)).map_or(0.0, |b| b.1)
 }
+
+/// The angle, up to a quarter turn, at which most area of upright walls stands; 0 where there are none.
+fn walls(mesh: &Mesh) -> f64 {
+    let wall = |t: usize| {
+        let [a, b, c] = mesh.corners(t);
+        let n = (b - a).cross(c - a);
+        (n.z.abs() <= UPRIGHT * n.length() && n != DVec3::ZERO)
+            .then(|| (flat(n).to_angle().rem_euclid(std::f64::consts::FRAC_PI_2), n.length()))
+    };
+    let mut all: Vec<(f64, f64)> = (0..mesh.triangles.len()).filter_map(wall).collect();
+    all.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let mut best = (0.0, 0.0);
+    for angles in all.chunk_by(|a, b| b.0 - a.0 <= UPRIGHT) {
+        let area = angles.iter().map(|a| a.1).sum::<f64>();
+        if area > best.1 {
+            best = (angles[0].0, area);
+        }
+    }
+    // What is a quarter turn but for round-off needs none.
+    if std::f64::consts::FRAC_PI_2 - best.0 <= UPRIGHT || best.0 <= UPRIGHT { 0.0 } else { best.0 }
+}
+
+/// Walls stand upright, and at the same angle, to this (radians): a coordinate of f32 over a millimetre at 100 mm.
+const UPRIGHT: f64 = 1e-5;
 
 /// Convex hull, counter-clockwise (monotone chain).
 pub fn hull(mut points: Vec<DVec2>) -> Vec<DVec2> {

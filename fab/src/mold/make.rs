@@ -77,7 +77,7 @@ pub fn push(mold: &mut Mold, name: &str, kind: Kind, solid: &Solid, pull: DVec3,
 /// What came of settling a solid: the mesh and the size of detail that it cost, or nothing.
 pub type Settled = Option<(Mesh, f64)>;
 
-/// Adds a solid that is settled.
+/// Adds a solid that is settled; one that only the OpenSCAD source needs is left out where f32 can not hold it.
 pub fn keep(
     mold: &mut Mold,
     (name, kind): (&str, Kind),
@@ -87,10 +87,8 @@ pub fn keep(
 ) {
     let (mesh, closed) = settled.map_or_else(|| (solid.mesh(), false), |(m, _)| (m, true));
     let plain = closed && (kind.is_made() || stl::is_plain(&mesh));
+    // A source without it is told where the source would be.
     if !kind.is_made() && !plain {
-        let what = format!("there is no OpenSCAD source: {name} has detail that f32 can not hold apart");
-        let found = finding(mold, Severity::Note, vec![], what, "the STL files are whole without it");
-        mold.findings.push(found);
         return;
     }
     let bodies = mesh.topology().bodies;

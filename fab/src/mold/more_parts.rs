@@ -6,13 +6,14 @@
 use crate::files::stl;
 use crate::mesh::{Mesh, area};
 use crate::mold::checks::{self, Halves, core_name};
-use crate::mold::cores::{self, Core, Cored};
+use crate::mold::cores::{self, Core, Cored, Skins};
+use crate::mold::frame::{Footprint, upright};
 use crate::mold::layout::{self, Around};
 use crate::mold::make::{blank, finding, push};
 use crate::mold::plan::Plan;
 use crate::mold::prepare::{self, Ready};
 use crate::mold::rigid::{self, Tools};
-use crate::mold::{Kind, Mold, MoldError, MoldSpec, parting, pictures, two_part};
+use crate::mold::{Kind, Mold, MoldError, MoldSpec, parting, pictures, scad, two_part};
 use crate::report::{Finding, Severity};
 use crate::solid::Solid;
 use glam::DVec3;
@@ -29,34 +30,56 @@ struct Candidate {
 }
 
 pub fn mold(part: &Mesh, ready: Ready, spec: &MoldSpec) -> Result<Mold, MoldError> {
-    let pulls = if spec.pull.is_some() { vec![] } else { ready.others.clone() };
     let mut refused = blank(&ready, spec, Plan::default(), spec.figures.draft.value);
-    let (mut found, mut why) = (vec![], vec![]);
-    let mut keep = |c: Result<Candidate, String>| match c {
-        Ok(candidate) => found.push(candidate),
-        Err(w) => why.push(w),
-    };
-    keep(candidate(ready, spec)?);
-    for pull in pulls {
-        keep(candidate(prepare::along(part, spec, pull)?, spec)?);
-    }
-    found.sort_by(|a, b| a.rank.0.cmp(&b.rank.0).then(a.rank.1.total_cmp(&b.rank.1)));
-    for candidate in &found {
-        for formed in [Formed::Part, Formed::Filled] {
-            match built(candidate, formed, spec)?.and_then(proven) {
-                Ok(mut mold) => {
-                    mold.pull.candidates = refused.pull.candidates;
-                    return Ok(mold);
-                }
+    // Right, but other kernels refuse one of its pieces.
+    let mut held: Option<Mold> = None;
+    let mut why = vec![];
+    for (all, skins) in attempts(part, spec, &ready)? {
+        let mut found = vec![];
+        for ready in all {
+            match candidate(ready, spec, skins)? {
+                Ok(candidate) => found.push(candidate),
                 Err(w) => why.push(w),
             }
         }
+        found.sort_by(|a, b| a.rank.0.cmp(&b.rank.0).then(a.rank.1.total_cmp(&b.rank.1)));
+        for (candidate, formed) in found.iter().flat_map(|c| [(c, Formed::Part), (c, Formed::Filled)]) {
+            match built(candidate, formed, spec)?.and_then(proven) {
+                Ok(mold)
+                    if scad::lacking(&mold).is_none() && !held.as_ref().is_some_and(|h| fewer(h, &mold)) =>
+                {
+                    return Ok(mold);
+                }
+                Ok(mold) => held = held.or(Some(mold)),
+                Err(w) => why.push(w),
+            }
+        }
+    }
+    if let Some(mold) = held {
+        return Ok(mold);
     }
     why.sort();
     why.dedup();
     refused.findings.push(refusal(&refused, &why.join("; ")));
     refused.extras.push(pictures::maps(&refused));
     Ok(refused)
+}
+
+/// Whether the first has fewer side cores.
+fn fewer(a: &Mold, b: &Mold) -> bool {
+    let cores = |m: &Mold| m.pieces.iter().filter(|p| p.kind == Kind::Core).count();
+    cores(a) < cores(b)
+}
+
+/// Ways to try it, one after the other until one holds: walls that touch in a line, or lie in each other but for round-off,
+/// may come out right one way and not another.
+fn attempts(part: &Mesh, spec: &MoldSpec, ready: &Ready) -> Result<Vec<(Vec<Ready>, Skins)>, MoldError> {
+    let [small, walls] =
+        [Footprint::Smallest, Footprint::Walls].map(|f| prepare::with_others(part, spec, ready, f));
+    let (small, walls) = (small?, walls?);
+    let turned = |(w, s): &(&Ready, &Ready)| w.framed.turn != s.framed.turn;
+    let other = walls.iter().zip(&small).filter(turned).map(|(w, _)| w.clone()).collect();
+    Ok(vec![(small, Skins::Kept), (other, Skins::Kept), (walls, Skins::Passed)])
 }
 
 fn refusal(mold: &Mold, why: &str) -> Finding {
@@ -69,14 +92,18 @@ fn refusal(mold: &Mold, why: &str) -> Finding {
 }
 
 /// The side cores of a pull, or why there are none.
-fn candidate(mut ready: Ready, spec: &MoldSpec) -> Result<Result<Candidate, String>, MoldError> {
+fn candidate(
+    mut ready: Ready,
+    spec: &MoldSpec,
+    skins: Skins,
+) -> Result<Result<Candidate, String>, MoldError> {
     let f = &spec.figures;
     let filled = cores::filled(&ready)?;
     let (mesh, snap, around) = (filled.mesh(), ready.framed.snap, Around::printed(f));
     ready.plane = parting::plane(&mesh, &parting::looks(&mesh, snap), snap);
     let plan = layout::plan(&ready.framed.mesh, ready.plane.height, &ready.tops, f, around);
     let tan = f.draft.value.to_radians().tan();
-    let Some(cored) = cores::cores(&ready, &filled, (plan.low, plan.high), tan)? else {
+    let Some(cored) = cores::cores(&ready, &filled, (plan.low, plan.high), (tan, skins))? else {
         return Ok(Err("some undercut is seen from no direction outside".into()));
     };
     let rooms: Vec<Solid> = cored.cores.iter().map(|c| c.room.clone()).collect();
@@ -130,26 +157,51 @@ fn built(candidate: &Candidate, formed: Formed, spec: &MoldSpec) -> Result<Resul
         Formed::Filled => &cored.filled,
     };
     let tools = Tools::of(&mold.plan, &spec.figures)?;
+    let least = (spec.figures.least_wall.value, cores::NOTHING * ready.solid.volume());
     let rooms = Solid::all(cored.cores.iter().map(|c| c.room.clone()).collect());
     for (name, half, pull) in rigid::halves(cavity, &below, &mold.plan, &tools)? {
-        match whole(half.minus(&rooms), ready.solid.volume()) {
+        let half = half.minus(&rooms);
+        if let Some(why) = hanging(&half, &cored.cores, least, &format!("the {name} half")) {
+            return Ok(Err(why));
+        }
+        match whole(half, ready.solid.volume()) {
             Ok(half) => push(&mut mold, name, Kind::Half, &half, pull, 1),
             Err(off) => return Ok(Err(format!("side cores would cut {off:.3} mm3 off the {name} half"))),
         }
     }
     for (k, core) in cored.cores.iter().enumerate() {
+        if let Some(why) = hanging(&core.solid, &cored.cores[..k], least, "a side core") {
+            return Ok(Err(why));
+        }
         push(&mut mold, &core_name(k), Kind::Core, &core.solid, core.pull, 1);
     }
     if let Some(wrong) = mold.findings.iter().find(|f| f.severity == Severity::Error) {
         return Ok(Err(wrong.what.clone()));
     }
-    for (k, core) in cored.cores.iter().enumerate() {
-        push(&mut mold, &format!("{}-room", core_name(k)), Kind::Room, &core.room, DVec3::ZERO, 0);
+    let roomy = |c: &&Core| c.room.volume() > c.solid.volume();
+    for (k, core) in cored.cores.iter().enumerate().filter(|(_, c)| roomy(c)) {
+        push(&mut mold, &scad::room_name(&core_name(k)), Kind::Room, &core.room, DVec3::ZERO, 0);
     }
     assign(&mut mold, &cored.cores);
     told(&mut mold, cored);
     let aside = two_part::aside(&mold, &cored.filled)?;
     two_part::finish(mold, &ready.solid, aside, &tools).map(Ok)
+}
+
+/// Why a piece is none that can be made, if where cores take half a wall more on all sides something comes off it: it
+/// hangs by less than a wall.
+fn hanging(piece: &Solid, cores: &[Core], (wall, enough): (f64, f64), name: &str) -> Option<String> {
+    let shifts = |c: &Core| {
+        let turn = upright(c.pull);
+        let ways = [turn.row(0), turn.row(1), turn.row(2)].into_iter().flat_map(|a| [a, -a]);
+        ways.map(|a| c.room.moved(a * wall / 2.0)).collect::<Vec<_>>()
+    };
+    let left = piece.minus(&Solid::all(cores.iter().flat_map(shifts).collect()));
+    let mut bodies: Vec<f64> = left.bodies().iter().map(Solid::volume).collect();
+    bodies.sort_by(f64::total_cmp);
+    bodies.pop();
+    let off: f64 = bodies.iter().sum();
+    (off > enough).then(|| format!("{off:.3} mm3 of {name} would hang by less than a wall"))
 }
 
 /// A half in one body: crumbs within what the cavity may be off are left away; more than that, in mm3, is too much.

@@ -5,7 +5,7 @@ use crate::bvh::Bvh;
 use crate::cross;
 use crate::files::stl;
 use crate::mesh::{Closure, Mesh};
-use crate::mold::frame::{Framed, framed, settled};
+use crate::mold::frame::{Footprint, Framed, framed, settled};
 use crate::mold::parting::{self, Plane};
 use crate::mold::pull::{self, Candidate, Search};
 use crate::mold::shadow::{self, Blocked};
@@ -15,6 +15,7 @@ use crate::solid::{NotSolid, Solid};
 use glam::DVec3;
 
 /// A part ready for its mold.
+#[derive(Clone)]
 pub struct Ready {
     pub framed: Framed,
     pub pull: Pull,
@@ -134,18 +135,31 @@ pub fn ready(part: &Mesh, spec: &MoldSpec) -> Result<Ready, MoldError> {
                 plainest(part, &search).ok_or_else(|| unfit("no pull direction was found", "give one"))?;
             let direction = better_end(part, chosen.direction, spec);
             let others = others(part, &search, direction);
-            Ok(Ready { others, ..turned(&checked, spec, chosen, direction, search.looked_at)? })
+            Ok(Ready {
+                others,
+                ..turned(&checked, spec, chosen, direction, Footprint::Smallest, search.looked_at)?
+            })
         }
-        Some(Some(d)) => turned(&checked, spec, &pull::measured(part, d), d, 1),
+        Some(Some(d)) => turned(&checked, spec, &pull::measured(part, d), d, Footprint::Smallest, 1),
         Some(None) => Err(unfit("the pull direction given has no length", "give three numbers, not all 0")),
     }
 }
 
-/// The part with this pull, at the end of it that leaves fewer high points.
-pub fn along(part: &Mesh, spec: &MoldSpec, pull: DVec3) -> Result<Ready, MoldError> {
+/// The part with the pull that was chosen, and with each of the others at the end that leaves fewer high points.
+pub fn with_others(
+    part: &Mesh,
+    spec: &MoldSpec,
+    first: &Ready,
+    footprint: Footprint,
+) -> Result<Vec<Ready>, MoldError> {
     let checked = checked(part)?;
-    let direction = better_end(&checked.mesh, pull, spec);
-    turned(&checked, spec, &pull::measured(&checked.mesh, pull), direction, 1)
+    let chosen = (first.pull.direction, first.pull.direction);
+    let others = first.others.iter().map(|&p| (p, better_end(&checked.mesh, p, spec)));
+    let along = |(pull, direction): (DVec3, DVec3)| {
+        let measured = pull::measured(&checked.mesh, pull);
+        turned(&checked, spec, &measured, direction, footprint, first.pull.candidates)
+    };
+    std::iter::once(chosen).chain(others).map(along).collect()
 }
 
 fn turned(
@@ -153,9 +167,10 @@ fn turned(
     spec: &MoldSpec,
     chosen: &Candidate,
     direction: DVec3,
+    footprint: Footprint,
     looked_at: usize,
 ) -> Result<Ready, MoldError> {
-    let framed = gang(framed(&checked.mesh, direction), spec);
+    let framed = gang(framed(&checked.mesh, direction, footprint), spec);
     let blocked = pull::undercut(&framed.mesh, framed.snap);
     let looks = parting::looks(&framed.mesh, framed.snap);
     let plane = parting::plane(&framed.mesh, &looks, framed.snap);
@@ -194,7 +209,7 @@ fn plainest<'a>(part: &Mesh, search: &'a Search) -> Option<&'a Candidate> {
     let first = search.best.first()?;
     let as_good = |c: &&Candidate| c.level == first.level && c.depth <= first.depth * (1.0 + SAME_DEPTH);
     let off = |c: &Candidate| {
-        let f = framed(part, c.direction);
+        let f = framed(part, c.direction, Footprint::Smallest);
         parting::plane(&f.mesh, &parting::looks(&f.mesh, f.snap), f.snap).wrong
     };
     let rated = search.best.iter().filter(as_good).map(|c| (off(c), c));
@@ -203,7 +218,8 @@ fn plainest<'a>(part: &Mesh, search: &'a Search) -> Option<&'a Candidate> {
 
 /// Of both ends of the pull the one that leaves fewer high points.
 fn better_end(part: &Mesh, d: DVec3, spec: &MoldSpec) -> DVec3 {
-    let count = |d: DVec3| tops(&framed(part, d).mesh, spec.figures.vent_prominence.value).len();
+    let count =
+        |d: DVec3| tops(&framed(part, d, Footprint::Smallest).mesh, spec.figures.vent_prominence.value).len();
     if count(-d) < count(d) { -d } else { d }
 }
 

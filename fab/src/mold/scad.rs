@@ -2,7 +2,7 @@
 //!
 //! Not promised: that values other than the ones written leave a mold that opens.
 
-use crate::files::stl::GRID;
+use crate::files::stl::{self, GRID};
 use crate::mold::layout::{Around, EDGE, SLOT, least_side};
 use crate::mold::plan::Channel;
 use crate::mold::rigid::KEY_TIP;
@@ -59,12 +59,21 @@ fn list(channels: &[Channel]) -> String {
     format!("[{}]", channels.iter().map(one).collect::<Vec<_>>().join(", "))
 }
 
-/// Whether every solid that the source of a rigid mold imports is there.
-pub fn has_all(mold: &Mold) -> bool {
-    let count = |kind: Kind| mold.pieces.iter().filter(|p| p.kind == kind).count();
+/// The file of a core with the room that it takes.
+pub fn room_name(core: &str) -> String {
+    format!("{core}-room")
+}
+
+/// What the source of a rigid mold would import, and f32 can not hold apart: the surface below a stepped parting, or a core
+/// that has no file with its room and is crossed itself.
+pub fn lacking(mold: &Mold) -> Option<String> {
+    let has = |name: &str| mold.pieces.iter().any(|p| p.name == name);
     let stepped = matches!(mold.parting, Some(Parting::Stepped { .. }));
-    let cores = count(Kind::Core);
-    (!stepped || count(Kind::Below) == 1) && (cores == 0 || count(Kind::Room) == cores)
+    if stepped && !mold.pieces.iter().any(|p| p.kind == Kind::Below) {
+        return Some("what lies below the parting".into());
+    }
+    let crossed = |p: &&Piece| p.kind == Kind::Core && !has(&room_name(&p.name)) && !stl::is_plain(&p.mesh);
+    mold.pieces.iter().find(crossed).map(|p| p.name.clone())
 }
 
 /// The source of a rigid mold, its places filled in.
@@ -77,12 +86,15 @@ fn more_parts(mold: &Mold, cores: &[&Piece]) -> String {
     let (f, plan) = (&mold.figures, &mold.plan);
     let strings = |all: Vec<String>| format!("[{}]", all.join(", "));
     let quoted = |p: &&Piece| format!("\"{}\"", p.name);
-    let rooms = mold.pieces.iter().filter(|p| p.kind == Kind::Room);
+    let room = |core: &&Piece| mold.pieces.iter().find(|p| p.name == room_name(&core.name));
+    let room_file =
+        |core: &&Piece| room(core).map_or("\"\"".into(), |p| format!("\"{}\"", file_name(mold, &p.name)));
     let own = [
         ("below", of(mold, Kind::Below)),
         ("names", cores.iter().map(|p| p.name.clone()).collect::<Vec<_>>().join(", ")),
         ("core_names", strings(cores.iter().map(quoted).collect())),
-        ("core_rooms", strings(rooms.map(|p| format!("\"{}\"", file_name(mold, &p.name))).collect())),
+        ("core_rooms", strings(cores.iter().map(room_file).collect())),
+        ("core_files", strings(cores.iter().map(|p| format!("\"{}\"", file_name(mold, &p.name))).collect())),
         ("core_pulls", strings(cores.iter().map(|p| vector(p.pull)).collect())),
         ("low", vector(plan.low)),
         ("high", vector(plan.high)),

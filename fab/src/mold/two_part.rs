@@ -82,8 +82,14 @@ pub fn finish(mut mold: Mold, cavity: &Solid, aside: Aside, tools: &Tools) -> Re
     mold.volumes.push(Volume { of: "cavity".into(), mm3: cavity.volume(), grams: None });
     mold.volumes.push(Volume { of: "channels and slots".into(), mm3: channels.volume(), grams: None });
     mold.steps = steps(&mold);
-    if scad::has_all(&mold) {
-        extra(&mut mold, "scad", scad::rigid);
+    match scad::lacking(&mold) {
+        None => extra(&mut mold, "scad", scad::rigid),
+        Some(what) => {
+            let what = format!("there is no OpenSCAD source: {what} has detail that f32 can not hold apart");
+            let remedy = "the STL files are whole without it";
+            let found = finding(&mold, Severity::Note, vec![], what, remedy);
+            mold.findings.push(found);
+        }
     }
     mold.extras.push(opened);
     Ok(mold)

@@ -143,9 +143,13 @@ pub fn check_openscad(report: &mut MoldReport, folder: &Path, program: &str) {
     let source = folder.join(format!("{}.scad", report.name));
     let Ok(openscad) = OpenScad::new(program, &std::env::temp_dir()) else { return };
     let there = source.exists();
+    let rooms: Vec<String> =
+        report.pieces.iter().filter(|p| p.kind == Kind::Room).map(|p| p.name.clone()).collect();
     for piece in report.pieces.iter_mut().filter(|p| p.copies > 0) {
-        if !there {
-            let outcome = Outcome::NotRun("there is no source".into());
+        let as_it_is = piece.kind == Kind::Core && !rooms.contains(&scad::room_name(&piece.name));
+        if !there || as_it_is {
+            let why = if there { "the source takes it as it is" } else { "there is no source" };
+            let outcome = Outcome::NotRun(why.into());
             piece.checks.push(Check {
                 by: "OpenSCAD".into(),
                 of: "the same solid from the source".into(),
