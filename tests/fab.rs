@@ -4,6 +4,8 @@
 mod large;
 #[path = "fab/made.rs"]
 mod made_otherwise;
+#[path = "fab/shared.rs"]
+mod shared;
 #[path = "fab/solids.rs"]
 mod solids;
 

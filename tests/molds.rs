@@ -4,6 +4,8 @@
 mod piped;
 #[path = "molds/second_kernel.rs"]
 mod second_kernel;
+#[path = "molds/trees.rs"]
+mod trees;
 #[path = "molds/whole.rs"]
 mod whole;
 

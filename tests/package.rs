@@ -1,5 +1,7 @@
 //! A fabricator's package as it lies on the disk: whole or not there, never over something unasked, readable by others.
 
+#[path = "package/shared.rs"]
+mod shared;
 #[path = "package/workshop.rs"]
 mod workshop;
 

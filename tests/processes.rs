@@ -122,6 +122,93 @@ fn silicone_that_is_cured_hot_is_refused_by_name_and_by_shrinkage() {
     assert!(refused.contains("heat-cured"), "{refused}");
 }
 
+/// The text of a process with the heat of its pour set, in the cavity and in the schedule.
+fn poured_at(name: &str, was: [&str; 2], cavity: &str, schedule: &str) -> String {
+    let [pour, line] = was;
+    let head = "[cavity.pour] # temperature of what is poured\n";
+    edited(name, &format!("{head}value = {pour}"), &format!("{head}value = {cavity}")).replacen(
+        &format!("value = {line}, unit = \"C\""),
+        &format!("value = {schedule}, unit = \"C\""),
+        1,
+    )
+}
+
+/// Metal and wax below their melting points are refused, in the cavity and in the schedule, each at its line.
+#[test]
+fn what_is_poured_is_liquid() {
+    let line_of = |text: &str, word: &str| 1 + text[..text.find(word).unwrap()].matches('\n').count();
+    let cold = poured_at(
+        "aluminium-lost-wax",
+        ["720\nunit = \"C\"\nlow = 680", "720"],
+        "600\nunit = \"C\"\nlow = 590",
+        "600",
+    )
+    .replacen("value = 600, unit = \"C\", low = 680", "value = 600, unit = \"C\", low = 590", 1);
+    let both = told(&cold);
+    for key in ["[cavity.pour]", "value = 600, unit"] {
+        let line = line_of(&cold, key);
+        let fault = both
+            .lines()
+            .find(|l| l.starts_with(&format!("my.toml:{line}:")))
+            .unwrap_or_else(|| panic!("{line}: {both}"));
+        for word in
+            ["aluminium A356", "at 600 C", "not liquid below 615 C", "grade S", "hint: pour it hotter"]
+        {
+            assert!(fault.contains(word), "{word}: {fault}");
+        }
+    }
+    assert_eq!(both.lines().count(), 2, "{both}");
+    let wax =
+        edited("wax-injected", "value = 65, unit = \"C\", low = 60", "value = 40, unit = \"C\", low = 30");
+    let faults = told(&wax);
+    assert!(
+        faults.contains("injection wax is to be poured at 40 C, and is not liquid below 46 C"),
+        "{faults}"
+    );
+    // At 720 C bronze is not liquid, at 1100 C gypsum is no investment.
+    let bronze = |heat: &str| {
+        poured_at(
+            "aluminium-lost-pla",
+            ["720\nunit = \"C\"\nlow = 680\nhigh = 760", "?"],
+            &format!("{heat}\nunit = \"C\"\nlow = {heat}\nhigh = {heat}"),
+            "?",
+        )
+        .replacen("material = \"aluminium A356\"", "material = \"bronze CuSn10\"", 1)
+    };
+    assert!(
+        told(&bronze("720"))
+            .contains("bronze CuSn10 is to be poured at 720 C, and is not liquid below 850 C")
+    );
+    assert!(told(&bronze("1100")).contains("gypsum breaks down"));
+}
+
+#[test]
+fn the_cavity_and_the_schedule_pour_at_the_same_heat() {
+    let metal = edited("aluminium-lost-pla", "value = 720, unit", "value = 700, unit");
+    let faults = told(&metal);
+    let line = 1 + metal[..metal.find("value = 700, unit").unwrap()].matches('\n').count();
+    assert!(faults.starts_with(&format!("my.toml:{line}:")), "{line}: {faults}");
+    assert!(faults.contains("at 700 C, and the cavity is said to be filled at 720 C"), "{faults}");
+    let no_figure = edited("wax-poured", "melts = \"beeswax or paraffin\"", "melts = \"\"");
+    assert!(told(&no_figure).contains("\"melts\" is not a text"));
+    let hours = edited("pu-resin", "stage = \"resin\"", "melts = \"polyurethane resin\"\nstage = \"resin\"");
+    assert!(told(&hours).contains("has no figure in C"), "{}", told(&hours));
+    let both = poured_at("wax-poured", ["85", "85"], "84", "84");
+    assert_eq!(Process::parse("my.toml", &both).unwrap().cavity.unwrap().pour.value, 84.0);
+}
+
+/// Of every metal and wax that comes along it is known when it is liquid; resin and silicone do not melt.
+#[test]
+fn of_what_melts_it_is_known_when() {
+    for p in names().map(|n| Process::find(n).unwrap()) {
+        let Some(cavity) = &p.cavity else { continue };
+        let melts = p.route.is_metal() || p.material.contains("wax");
+        assert_eq!(cavity.liquid.is_some(), melts, "{}", p.name);
+        let poured = |i: &weavelock_fab::process::Instruction| i.melts.as_ref() == Some(&p.material);
+        assert_eq!(p.schedule.iter().filter(|i| poured(i)).count(), usize::from(melts), "{}", p.name);
+    }
+}
+
 #[test]
 fn a_route_has_its_cavity_and_its_schedule() {
     let lost = |name: &str| source(name).unwrap().split("[[schedule]]").next().unwrap().to_string();

@@ -112,12 +112,28 @@ pub fn collect(report: &mut Report) {
     }
     found.extend(report.routes.iter().filter_map(|r| of_shrinkage(report, r)));
     found.extend(report.routes.iter().filter_map(of_no_clearance));
-    found.extend(report.parts.iter().filter(|p| p.same_as.is_none()).flat_map(of_walls));
+    found.extend(of_all_walls(report));
     found.extend(report.parts.iter().filter_map(of_hollows));
     report.findings.extend(found);
     report.findings.sort_by_key(|f| std::cmp::Reverse(f.severity));
     let mut seen = std::collections::BTreeSet::new();
     report.findings.retain(|f| seen.insert((f.place.parts.clone(), f.what.clone())));
+}
+
+/// Walls of each solid once, with all parts that it is; places are those of the first that was written.
+fn of_all_walls(report: &Report) -> Vec<Finding> {
+    let mut told = std::collections::BTreeSet::new();
+    let mut found = Vec::new();
+    for part in report.parts.iter().filter(|p| p.file.is_some()) {
+        if told.contains(&part.id) {
+            continue;
+        }
+        let alike = report.alike(&part.id);
+        told.extend(alike.iter().cloned());
+        let named = |f: Finding| Finding { place: Place { parts: alike.clone(), ..f.place }, ..f };
+        found.extend(of_walls(part).into_iter().map(named));
+    }
+    found
 }
 
 fn of_gap(gap: &Gap) -> Option<Finding> {

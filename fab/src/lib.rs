@@ -10,6 +10,7 @@
 
 pub mod bvh;
 pub mod check;
+pub mod congruent;
 pub mod coupon;
 pub mod cross;
 mod ears;
@@ -25,6 +26,7 @@ pub mod near;
 pub mod offset;
 pub mod package;
 pub mod pinch;
+mod print_face;
 pub mod process;
 pub mod report;
 pub mod shape;

@@ -6,6 +6,7 @@
 
 use crate::bvh::Bvh;
 use crate::check::Programs;
+use crate::congruent;
 use crate::cross;
 use crate::external;
 use crate::files::{Batch, FileError, obj, stems, stl};
@@ -15,12 +16,13 @@ use crate::ledger::Scale;
 use crate::mesh::Mesh;
 use crate::mold::fins::{self, Fins};
 use crate::offset::{self, Aim, Offset};
-use crate::package::laying::{Laying, again, lay};
+use crate::package::laying::Laying;
 use crate::pinch;
+use crate::print_face;
 use crate::process::Process;
 use crate::report::{Finding, PartReport, ReadBack, Report, RouteReport};
 use crate::shape::{Fault, Job, Role};
-use crate::shave::{self, Shaving};
+use crate::shave::Shaving;
 use crate::wall;
 use glam::DVec3;
 use rayon::prelude::*;
@@ -173,10 +175,11 @@ pub fn output(job: &Job, recipe: &Recipe, folder: &Path) -> Result<Output, FabEr
     if !faults.is_empty() {
         return Err(FabError::Job(faults));
     }
-    let job = &job.planar();
     let scales: Vec<Scale> =
         job.parts.iter().map(|p| Scale::of(recipe.process_of(&p.id), recipe.datum)).collect();
     let snap = snap_finished(job, &scales);
+    // Parts that no file can tell apart are one solid; what this shifts a face by, `relief` makes up for.
+    let job = &congruent::united(&job.planar(), snap);
     let mut pieces = pieces(job, recipe, snap, scales);
     let mut batch = Batch::new(folder)?;
     for piece in &mut pieces {
@@ -235,49 +238,42 @@ fn pieces(job: &Job, recipe: &Recipe, snap: f64, scales: Vec<Scale>) -> Vec<Piec
             best = again;
         }
     }
-    best.par_iter_mut().enumerate().for_each(|(p, piece)| {
-        carve(job, p, aims[p].depth, piece);
-        shave(recipe.process_of(&job.parts[p].id), piece);
-    });
+    let carved: Vec<bool> =
+        best.par_iter_mut().enumerate().map(|(p, piece)| carve(job, p, aims[p].depth, piece)).collect();
+    let roots: Vec<usize> = best.iter().map(|p| p.offset.same_as).collect();
+    let shavings: Vec<Option<Shaving>> =
+        job.parts.iter().map(|p| print_face::shaving(recipe.process_of(&p.id))).collect();
+    for (p, piece) in best.iter_mut().enumerate() {
+        // Alike only with those that the same is done to.
+        let done = |q: usize| (roots[q], carved[q], shavings[q]);
+        piece.offset.same_as = (0..p).find(|&q| done(q) == done(p)).unwrap_or(p);
+    }
+    print_face::shave(job, &shavings, &mut best);
     best
 }
 
-/// The fallback: the part less a block around each contact facet, where no move was found.
-fn carve(job: &Job, p: usize, depth: f64, failed: &mut Piece) {
+/// The fallback: the part less a block around each contact facet, where no move was found; whether it was taken.
+fn carve(job: &Job, p: usize, depth: f64, failed: &mut Piece) -> bool {
     if failed.faults.is_empty() {
-        return;
+        return false;
     }
     let part = &job.parts[p];
     let contact: Vec<bool> = part.roles.iter().map(|r| *r != Role::Outer).collect();
-    let Ok(Some(mesh)) = offset::carve::carve(&job.shapes[part.shape], &contact, depth) else { return };
+    let Ok(Some(mesh)) = offset::carve::carve(&job.shapes[part.shape], &contact, depth) else { return false };
     let mesh = mesh.map(|v| part.pose.transform_point3(v));
-    let offset = Offset { mesh, collapses: 0, longest_move: depth * CORNER, same_as: p, failures: vec![] };
+    let same_as = failed.offset.same_as;
+    let offset = Offset { mesh, collapses: 0, longest_move: depth * CORNER, same_as, failures: vec![] };
     let mut carved = piece(&failed.id, failed.stem.clone(), offset, failed.scale.clone());
-    if carved.faults.is_empty() {
+    let sound = carved.faults.is_empty();
+    if sound {
         carved.notes.push(findings::of_carving(&failed.id, &failed.faults));
         *failed = carved;
     }
+    sound
 }
 
 /// How far carving goes at a corner, in depths: along the diagonal of a square.
 const CORNER: f64 = std::f64::consts::SQRT_2;
-
-/// Slice and chamfer of what is printed in the part's own shape.
-fn shave(process: &Process, piece: &mut Piece) {
-    let print = &process.print;
-    let what = Shaving { flatten: print.flatten.value, chamfer: print.elephant_foot.value };
-    if what.is_off() || !process.route.prints_the_shape() || !piece.faults.is_empty() {
-        return;
-    }
-    let laying = lay(&piece.master);
-    match shave::shaved(&piece.master, &laying, what) {
-        Ok(master) => {
-            piece.faults.extend(findings::of_mesh(&piece.id, &master, &piece.scale));
-            (piece.laid, piece.master) = (Some(again(&master, &laying)), master);
-        }
-        Err(why) => piece.notes.push(findings::of_shaving(&piece.id, &why)),
-    }
-}
 
 /// Where the exact move fails, edges so many times longer are united first, and so many times: 0.02, 0.08, 0.32 and 1.28
 /// of the depth. What a weld costs in clearance `relief` mends, and the gap is measured all the same.
@@ -407,8 +403,9 @@ fn part_report(job: &Job, pieces: &[Piece], p: usize, recipe: &Recipe, folder: &
         clearance_mm: process.clearance.value,
         file: piece.made.as_ref().map(|_| stl_name),
         obj: piece.made.as_ref().filter(|_| recipe.obj).map(|_| obj_name),
-        // Congruent parts may have been laid on different faces to be shaved.
-        same_as: (same != p && piece.laid.is_none()).then(|| job.parts[same].id.clone()),
+        // One of them may have been shaved and the other not.
+        same_as: (same != p && piece.laid.is_some() == pieces[same].laid.is_some())
+            .then(|| job.parts[same].id.clone()),
         read_back: piece.made.as_ref().map(|_| ReadBack::of(&piece.master)).unwrap_or_default(),
         expected_volume_mm3: piece.master.volume(),
         nominal_volume_mm3: nominal,

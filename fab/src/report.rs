@@ -175,6 +175,14 @@ pub struct MoldFile {
 }
 
 impl Report {
+    /// The part of this id, and those after it that are the same solid by the same process.
+    pub fn alike(&self, id: &str) -> Vec<String> {
+        let Some(at) = self.parts.iter().position(|p| p.id == id) else { return vec![id.to_string()] };
+        let root = |p: &PartReport| p.same_as.clone().unwrap_or(p.id.clone());
+        let same = |p: &&PartReport| root(p) == root(&self.parts[at]) && p.process == self.parts[at].process;
+        self.parts[at..].iter().filter(same).map(|p| p.id.clone()).collect()
+    }
+
     /// The gravest severity among the findings.
     pub fn worst(&self) -> Option<Severity> {
         self.findings.iter().map(|f| f.severity).max()

@@ -195,9 +195,10 @@ pub struct Fab {
     /// Replace files that are there
     #[arg(long)]
     pub force: bool,
-    /// Air on each face, over the process: `--clearance "0.25 mm"`
-    #[arg(long, value_name = "LENGTH", value_parser = length)]
-    pub clearance: Option<f64>,
+    /// Air on each face, over the processes: `--clearance "0.25 mm"`; of one process among several:
+    /// `--clearance "sla=0.1 mm"`; several with commas, or the flag again
+    #[arg(long, value_name = "[PROCESS=]LENGTH", value_delimiter = ',')]
+    pub clearance: Vec<String>,
     /// Lengths in mm of the coupon's 60 mm bar after a step: `--measured print=59.80,silicone=59.75`; of one process
     /// among several: `--measured sla:print=59.72`
     #[arg(long, value_name = "[PROCESS:]STEP=MM", value_delimiter = ',')]

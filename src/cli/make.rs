@@ -2,6 +2,7 @@
 //!
 //! Not promised: a package around the parts; `package` makes that.
 
+use super::clearances;
 use super::load::Placed;
 use super::told::{News, Told, Trouble};
 use crate::fabricate;
@@ -76,6 +77,9 @@ pub fn recipe(placed: &Placed, wish: &Wish, checkers: Checkers) -> Result<Recipe
     let parts: BTreeMap<String, Process> = parts.into_iter().filter_map(|(id, p)| Some((id, p?))).collect();
     let used: Vec<&Process> = std::iter::once(&main).chain(parts.values()).collect();
     faults.extend(steps_of_none(&own, &used));
+    let asm = &placed.joined.assembly;
+    let maker = |p| parts.get(&asm.part(p).id).unwrap_or(&main).name.as_str();
+    faults.extend(clearances::of_nobody(&own, &asm.ids().map(maker).collect()));
     let mut with = |p: &Process| p.with(&for_its_steps(&own, p)).map_err(|e| faults.push(e.to_string())).ok();
     let main = with(&main);
     let parts = parts.iter().map(|(id, p)| Some((id.clone(), with(p)?))).collect::<Option<BTreeMap<_, _>>>();
@@ -96,8 +100,11 @@ fn all_faults(mut faults: Vec<String>) -> Trouble {
 fn overrides(spec: Option<&FabSpec>, wish: &Overrides) -> Overrides {
     // The spec's shares are fractions, a process speaks of per cent.
     let shrinkage = spec.map(|f| f.shrinkage.iter().map(|(step, s)| (step.clone(), s * 100.0)).collect());
+    let mut clearances = spec.map(|f| f.clearances_mm.clone()).unwrap_or_default();
+    clearances.extend(wish.clearances.clone());
     Overrides {
         clearance: wish.clearance.or(spec.and_then(|f| f.clearance_mm)),
+        clearances,
         shrinkage: shrinkage.unwrap_or_default(),
         measured: wish.measured.clone(),
         bed: wish.bed.clone().or(spec.and_then(|f| f.bed.clone())),

@@ -6,6 +6,7 @@ pub mod args;
 pub mod atlas;
 mod blocking;
 mod check;
+mod clearances;
 mod draw;
 mod exported;
 mod filled;

@@ -3,6 +3,7 @@
 //! Not promised: anything beyond what `weavelock_fab::package` promises.
 
 use super::args::{Common, Fab};
+use super::clearances::{Clearances, clearances};
 use super::load::Placed;
 use super::make::{self, Checkers, Wish};
 use super::pictured;
@@ -83,6 +84,10 @@ fn wish(asked: &Fab) -> Result<Wish, Trouble> {
     twice(measured.iter().map(|m| &m.step)).for_each(|step| {
         sound(format!("--measured gives two lengths after {step:?}\n  hint: give the mean of both bars"));
     });
+    let air = clearances(&asked.clearance).unwrap_or_else(|whys| {
+        whys.into_iter().for_each(&mut sound);
+        Clearances::default()
+    });
     if !faults.is_empty() {
         return Err(Trouble::Word(faults.join("\n")));
     }
@@ -90,7 +95,8 @@ fn wish(asked: &Fab) -> Result<Wish, Trouble> {
         process: asked.process.clone(),
         parts,
         own: Overrides {
-            clearance: asked.clearance,
+            clearance: air.all,
+            clearances: air.of,
             measured,
             bed: asked.bed.clone(),
             elephant_foot: asked.elephant_foot,

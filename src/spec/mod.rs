@@ -182,6 +182,8 @@ pub struct FabSpec {
     pub process: String,
     /// Air for each face, overriding the process.
     pub clearance_mm: Option<f64>,
+    /// The same of single processes, by name; these come first.
+    pub clearances_mm: BTreeMap<String, f64>,
     /// Step of the process to its linear shrinkage as a fraction, overriding the process.
     pub shrinkage: BTreeMap<String, f64>,
     /// Parts made by another process: id to its name.

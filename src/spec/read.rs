@@ -189,7 +189,7 @@ fn fab<'t>(reader: &mut Reader<'t>, field: &Field<'t>, width: Option<f64>) -> Op
     let fields = reader.table(field)?;
     reader.only(
         &fields,
-        &["process", "clearance", "shrinkage", "parts", "bed", "elephant_foot", "flatten"],
+        &["process", "clearance", "clearances", "shrinkage", "parts", "bed", "elephant_foot", "flatten"],
         home,
     );
     let process = match reader.get(&fields, "process") {
@@ -197,6 +197,10 @@ fn fab<'t>(reader: &mut Reader<'t>, field: &Field<'t>, width: Option<f64>) -> Op
         None => reader.lacks(&fields, "process", "is missing", "name a process, as in process = \"fdm-pla\""),
     };
     let clearance = reader.get(&fields, "clearance").map(|field| clearance(reader, &field, width));
+    let clearances_mm = match reader.get(&fields, "clearances") {
+        Some(field) => clearances(reader, &field, width),
+        None => Some(BTreeMap::new()),
+    };
     let shrinkage = match reader.get(&fields, "shrinkage") {
         Some(field) => shrinkage(reader, &field),
         None => Some(BTreeMap::new()),
@@ -218,6 +222,7 @@ fn fab<'t>(reader: &mut Reader<'t>, field: &Field<'t>, width: Option<f64>) -> Op
     Some(FabSpec {
         process: process?,
         clearance_mm,
+        clearances_mm: clearances_mm?,
         shrinkage: shrinkage?,
         parts: parts?,
         bed,
@@ -278,6 +283,24 @@ fn clearance<'t>(reader: &mut Reader<'t>, field: &Field<'t>, width: Option<f64>)
         }
         None => reader.length(field, 0.0..=MAX_CLEARANCE_MM, "it is taken off each face"),
     }
+}
+
+/// Of single processes, by name.
+fn clearances<'t>(
+    reader: &mut Reader<'t>,
+    field: &Field<'t>,
+    width: Option<f64>,
+) -> Option<BTreeMap<String, f64>> {
+    let fields = reader.table(field)?;
+    let mut all = Some(BTreeMap::new());
+    for name in fields.keys() {
+        let mm = reader.get(&fields, name).and_then(|field| clearance(reader, &field, width));
+        all = all.zip(mm).map(|(mut all, mm)| {
+            all.insert(name.to_string(), mm);
+            all
+        });
+    }
+    all
 }
 
 /// Steps from the file to the finished part; a chain has four.

@@ -146,6 +146,8 @@ struct UnitTable {
 struct FabTable {
     process: String,
     clearance: Option<String>,
+    /// Of single processes, by name.
+    clearances: Option<std::collections::BTreeMap<String, String>>,
     shrinkage: Option<std::collections::BTreeMap<String, String>>,
     /// Processes of single parts, by id.
     parts: Option<std::collections::BTreeMap<String, String>>,

@@ -9,27 +9,27 @@ use weavelock_fab::mesh::Mesh;
 use weavelock_fab::offset::REACH;
 use weavelock_fab::process::source;
 
-fn fab(at: &Path, out: &str, more: &[&str]) -> Value {
+pub fn fab(at: &Path, out: &str, more: &[&str]) -> Value {
     let file = plain();
     let made = ran(&[&["fab", &file, "--out", out, "--json", "-q"], more].concat(), at);
     assert_eq!(made.status.code(), Some(0), "{}", said(&made));
     serde_json::from_slice(&made.stdout).expect("JSON")
 }
 
-fn list<'a>(v: &'a Value, key: &str) -> &'a Vec<Value> {
+pub fn list<'a>(v: &'a Value, key: &str) -> &'a Vec<Value> {
     v[key].as_array().unwrap_or_else(|| panic!("{key} in {v}"))
 }
 
-fn number(v: &Value) -> f64 {
+pub fn number(v: &Value) -> f64 {
     v.as_f64().unwrap_or_else(|| panic!("a number: {v}"))
 }
 
-fn of(v: &Value, what: &str) -> f64 {
+pub fn of(v: &Value, what: &str) -> f64 {
     let found = list(v, "volumes").iter().find(|x| x["of"].as_str().is_some_and(|w| w.starts_with(what)));
     number(&found.unwrap_or_else(|| panic!("{what} in {v}"))["grams"])
 }
 
-fn line<'a>(answer: &'a Value, end: &str) -> &'a Value {
+pub fn line<'a>(answer: &'a Value, end: &str) -> &'a Value {
     let found =
         list(&answer["bill"], "lines").iter().find(|l| l["what"].as_str().is_some_and(|w| w.ends_with(end)));
     found.unwrap_or_else(|| panic!("{end} in {}", answer["bill"]))

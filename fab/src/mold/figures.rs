@@ -55,6 +55,8 @@ figures! {
     modulus_step: "1", 1.0, 3.0;
     /// Investment between pattern and flask.
     flask_wall: "mm", 5.0, 100.0;
+    /// Of the flask that the oven takes: patterns beyond it go on further trees.
+    flask_height: "mm", 50.0, 2000.0;
     /// On 100 g of investment powder.
     water: "g", 20.0, 80.0;
     investment_density: "g/cm3", 1.0, 4.0;

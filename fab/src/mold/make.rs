@@ -124,6 +124,7 @@ pub fn blank(ready: &Ready, spec: &MoldSpec, plan: Plan, draft: f64) -> Mold {
         shift,
         maps: maps(&mesh, ready.plane.height, &ready.blocked, snap, draft),
         part: mesh,
+        castings: spec.count,
         snap,
         parting: Some(parting),
         filled_mm3: None,

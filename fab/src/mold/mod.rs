@@ -10,6 +10,7 @@ pub mod figures;
 pub mod fill;
 pub mod fins;
 pub mod frame;
+mod grown;
 pub mod layout;
 mod make;
 mod maps;

@@ -7,9 +7,9 @@ use crate::mold::make::{blank, extra, finding, push, source};
 use crate::mold::plan::Plan;
 use crate::mold::prepare::{Ready, unfit};
 use crate::mold::wax::{self, Section, Tree};
-use crate::mold::{Kind, Measured, Mold, MoldError, MoldSpec, Step, Volume, pictures, scad};
+use crate::mold::{Kind, Measured, Mold, MoldError, MoldSpec, Step, Volume, grown, scad};
 use crate::process::Figure;
-use crate::report::Severity;
+use crate::report::{Finding, Severity};
 use crate::solid::{NotSolid, Solid, frustum};
 use glam::DVec3;
 use std::f64::consts::PI;
@@ -27,6 +27,7 @@ pub fn mold(ready: Ready, spec: &MoldSpec) -> Result<Mold, MoldError> {
     let gate = wax::thickest(&mold.part, &balls)
         .ok_or_else(|| unfit("no straight gate reaches the part from outside", "divide the part"))?;
     let tree = wax::tree(&mold.part, &gate, spec.count, f)?;
+    mold.castings = tree.places.len();
     push(&mut mold, "tree", Kind::Tree, &tree.solid, DVec3::ZERO, 1);
     let flask = flask(&tree, f)?;
     push(&mut mold, "flask", Kind::Flask, &flask, DVec3::ZERO, 1);
@@ -40,12 +41,32 @@ pub fn mold(ready: Ready, spec: &MoldSpec) -> Result<Mold, MoldError> {
         let found = finding(&mold, Severity::Warning, at, what, remedy);
         mold.findings.push(found);
     }
+    mold.findings.extend(too_high(&mold, &tree, f));
     mold.volumes = volumes(&tree, spec);
     mold.steps = steps(&mold, &tree, f);
     extra(&mut mold, "scad", |m| scad::tree(m, &tree));
-    let picture = pictures::prints(&mold);
+    let picture = grown::opened(&mold, &tree, &flask, FLASK_WALL)?;
     mold.extras.push(picture);
     Ok(mold)
+}
+
+/// A flask of one row of patterns that is higher than the oven takes.
+fn too_high(mold: &Mold, tree: &Tree, f: &Figures) -> Option<Finding> {
+    let (_, low, high) = wax::flask(tree, f);
+    let (height, most) = (high - low, f.flask_height.value);
+    (height > most).then(|| {
+        let what = format!(
+            "the flask is {height:.0} mm high; {most} mm are taken to fit ({})",
+            f.flask_height.source
+        );
+        finding(
+            mold,
+            Severity::Warning,
+            vec![],
+            what,
+            "look whether your oven takes it, or make the part smaller",
+        )
+    })
 }
 
 fn said(m: &Measured) -> String {

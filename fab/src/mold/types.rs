@@ -225,6 +225,8 @@ pub struct Mold {
     pub shift: DVec3,
     /// The part in the mold's frame, as f32 can hold it; all of a gang.
     pub part: Mesh,
+    /// Parts that one filling makes: as many as asked for, or as a tree takes.
+    pub castings: usize,
     /// How far f32 may move a coordinate of a file, mm.
     pub snap: f64,
     pub parting: Option<Parting>,

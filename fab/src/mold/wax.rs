@@ -10,7 +10,7 @@ use crate::mold::figures::Figures;
 use crate::mold::ray;
 use crate::near::on_triangle;
 use crate::solid::{NotSolid, Solid, frustum, turned};
-use glam::{DMat3, DVec3};
+use glam::{DAffine3, DMat3, DVec3};
 use rayon::prelude::*;
 use std::f64::consts::PI;
 
@@ -32,6 +32,11 @@ pub struct Tree {
     pub gate: f64,
     /// The pattern, its gate along -x at the origin.
     pub lying: Mesh,
+    /// The gate along x from the runner's middle, and the runner with its cup.
+    pub bar: Mesh,
+    pub stem: Mesh,
+    /// Where gates and patterns stand, these `reach` along x from the runner's middle.
+    pub places: Vec<DAffine3>,
     /// From the runner's middle to the pattern, and on into it, mm.
     pub reach: f64,
     pub into: f64,
@@ -91,6 +96,7 @@ const BETWEEN: f64 = 10.0;
 /// A gate is at least as long as this share of its width, so that it can be sawn off.
 const NECK: f64 = 0.5;
 
+/// A tree of `count` patterns, or of fewer where not all fit on one.
 pub fn tree(part: &Mesh, at: &Section, count: usize, f: &Figures) -> Result<Tree, NotSolid> {
     let gate = gate(part, at, f);
     let runner = runner(gate, f);
@@ -103,32 +109,47 @@ pub fn tree(part: &Mesh, at: &Section, count: usize, f: &Figures) -> Result<Tree
     let half = lo.y.abs().max(hi.y.abs()) + BETWEEN / 2.0;
     let ring = ((PI / (half / near.max(f64::MIN_POSITIVE)).atan()).floor() as usize).max(1);
     let pitch = (hi.z - lo.z) + BETWEEN;
+    let count = evenly(count, ring * rows_in(f, runner, pitch));
     let rows = count.div_ceil(ring);
     let pattern = Solid::of(&lying)?;
     let into = at.thick / 2.0;
     let bar = Solid::of(&lying_gate(reach, into, gate))?;
-    let (mut bodies, mut levels) = (vec![], vec![]);
+    let (mut bodies, mut levels, mut places) = (vec![], vec![], vec![]);
     for row in 0..rows {
         let here = ring.min(count - row * ring);
         let height = BETWEEN - lo.z + pitch * row as f64;
         levels.push((height, here));
         for k in 0..here {
             let around = DMat3::from_rotation_z(2.0 * PI * k as f64 / here as f64);
-            let place = |m: &Mesh, shift: f64| {
-                Solid::of(&m.map(|v| around * (v + DVec3::new(shift, 0.0, 0.0)) + DVec3::Z * height))
+            let place = DAffine3::from_mat3_translation(around, DVec3::Z * height);
+            let placed = |m: &Mesh, shift: f64| {
+                Solid::of(&m.map(|v| place.transform_point3(v + DVec3::new(shift, 0.0, 0.0))))
             };
-            bodies.push(place(&pattern.mesh(), reach)?);
-            bodies.push(place(&bar.mesh(), 0.0)?);
+            bodies.push(placed(&pattern.mesh(), reach)?);
+            bodies.push(placed(&bar.mesh(), 0.0)?);
+            places.push(place);
         }
     }
     let top = 2.0 * BETWEEN + pitch * rows as f64;
-    let cup = turned(DVec3::ZERO, &[(0.0, runner / 2.0), (top, runner / 2.0), (top + runner, runner)]);
-    bodies.push(Solid::of(&cup)?);
+    let stem = turned(DVec3::ZERO, &[(0.0, runner / 2.0), (top, runner / 2.0), (top + runner, runner)]);
+    bodies.push(Solid::of(&stem)?);
     let solid = Solid::all(bodies);
     let radius = solid.mesh().vertices.iter().map(|v| v.truncate().length()).fold(0.0, f64::max);
     let moduli = Moduli { pattern: part.volume() / part.area(), gate: gate / 4.0, runner: runner / 4.0 };
     let foot = solid.mesh().bounds().0.z;
-    Ok(Tree { solid, runner, gate, lying, reach, into, levels, radius, foot, top: top + runner, moduli })
+    let (bar, top) = (bar.mesh(), top + runner);
+    Ok(Tree { solid, runner, gate, lying, bar, stem, places, reach, into, levels, radius, foot, top, moduli })
+}
+
+/// Rows of patterns in a flask of the height of the figures, at least one; `pitch`: from row to row, mm.
+fn rows_in(f: &Figures, runner: f64, pitch: f64) -> usize {
+    let room = f.flask_height.value - f.flask_wall.value - 2.0 * BETWEEN - runner;
+    ((room / pitch).floor() as usize).max(1)
+}
+
+/// Patterns on each of as few trees as hold all, the last with as many or fewer.
+fn evenly(count: usize, most: usize) -> usize {
+    count.div_ceil(count.div_ceil(most).max(1))
 }
 
 /// The gate's diameter, mm: of the area asked for, and up to the most of its range where its modulus asks for more.

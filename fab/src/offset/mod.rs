@@ -26,10 +26,10 @@ pub mod weld;
 use crate::mesh::Mesh;
 use crate::shape::{Job, Role, Shape};
 use body::Body;
-use glam::DVec3;
+use glam::{DAffine3, DVec3};
 use rayon::prelude::*;
 use settle::Settled;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// What the move of a part is to reach, all in mm.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -81,26 +81,47 @@ pub enum Why {
 pub const REACH: f64 = 0.02;
 
 /// Moves the contact facets of every part inward and parts the bodies to their fits. Parts with the same shape, contact
-/// facets and aim are moved once.
+/// facets and aim are moved once, and stay the same solid: what one of them has to give way by, all of them do, so that any
+/// of them fits in the place of any other. Where that fails, each of them is parted alone.
 pub fn offset(job: &Job, aims: &[Aim]) -> Vec<Offset> {
     let key = |p: usize| {
         let contact: Vec<bool> = job.parts[p].roles.iter().map(|r| *r != Role::Outer).collect();
         (job.parts[p].shape, contact, [aims[p].depth, aims[p].weld].map(f64::to_bits))
     };
     let mut first: BTreeMap<_, usize> = BTreeMap::new();
-    let same_as: Vec<usize> = (0..job.parts.len()).map(|p| *first.entry(key(p)).or_insert(p)).collect();
+    let kinds: Vec<usize> = (0..job.parts.len()).map(|p| *first.entry(key(p)).or_insert(p)).collect();
     let moved: BTreeMap<usize, (Body, Settled)> =
         first.par_iter().map(|((s, c, _), &p)| (p, moved_body(job, *s, c, &aims[p]))).collect();
-    let mut bodies: Vec<Body> =
-        same_as.iter().zip(&job.parts).map(|(first, part)| moved[first].0.posed(&part.pose)).collect();
-    let relieved = relief::relieve(&mut bodies, aims);
+    let (together, relieved) = parted((job, aims), &moved, &kinds, &kinds);
+    let spoilt = |p: &usize| relieved.contains(&kinds[*p]) && !together[*p].failures.is_empty();
+    let failed: BTreeSet<usize> = (0..kinds.len()).filter(spoilt).map(|p| kinds[p]).collect();
+    let alone = |p: usize| if failed.contains(&kinds[p]) { p } else { kinds[p] };
+    let groups: Vec<usize> = (0..kinds.len()).map(alone).collect();
+    if groups == kinds { together } else { parted((job, aims), &moved, &kinds, &groups).0 }
+}
+
+/// The moved bodies parted to their fits, parts of a group, named by its first, as one; and the groups that had to give way.
+fn parted(
+    (job, aims): (&Job, &[Aim]),
+    moved: &BTreeMap<usize, (Body, Settled)>,
+    kinds: &[usize],
+    groups: &[usize],
+) -> (Vec<Offset>, BTreeSet<usize>) {
+    let mut bodies: BTreeMap<usize, Body> = groups.iter().map(|&g| (g, moved[&kinds[g]].0.clone())).collect();
+    let poses: Vec<DAffine3> = job.parts.iter().map(|p| p.pose).collect();
+    let relieved = relief::relieve(&mut bodies, groups, &poses, aims);
     let result = |p: usize| {
-        let shared = if relieved[p].is_none() && relieved[same_as[p]].is_none() { same_as[p] } else { p };
-        let most = most_removed(&job.shapes[job.parts[p].shape], &job.parts[p].roles, aims[p].depth);
-        let least = job.shapes[job.parts[p].shape].volume() - most;
-        finish(&bodies[p], &moved[&same_as[p]].1, relieved[p].as_ref(), (shared, least))
+        let (part, group) = (&job.parts[p], groups[p]);
+        let shape = &job.shapes[part.shape];
+        let least = shape.volume() - most_removed(shape, &part.roles, aims[p].depth);
+        // A group of one that nothing was done to is what its kind is, where nothing was done to that.
+        let touched = [group, kinds[p]].iter().any(|g| relieved.contains_key(g));
+        let same_as = if touched { group } else { kinds[p] };
+        let body = bodies[&group].posed(&part.pose);
+        finish(&body, &moved[&kinds[p]].1, relieved.get(&group), (same_as, least))
     };
-    (0..job.parts.len()).into_par_iter().map(result).collect()
+    let offsets = (0..job.parts.len()).into_par_iter().map(result).collect();
+    (offsets, relieved.keys().copied().collect())
 }
 
 fn moved_body(job: &Job, shape: usize, contact: &[bool], aim: &Aim) -> (Body, Settled) {

@@ -12,7 +12,7 @@ use super::settle::{Settled, settle};
 use crate::bvh::{Aabb, Bvh};
 use crate::mesh::Mesh;
 use crate::near::{Close, closer_than};
-use glam::DVec3;
+use glam::{DAffine3, DVec3};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 
@@ -37,28 +37,56 @@ struct Surface {
     tree: Bvh,
 }
 
-/// Parts bodies that are nearer than the sum of their shares to the sum of their depths. Gives, for each body, what was
-/// done to it, or `None` where it was left as it was.
-pub fn relieve(bodies: &mut [Body], aims: &[Aim]) -> Vec<Option<Settled>> {
-    let mut done: Vec<Option<Settled>> = vec![None; bodies.len()];
-    let mut surfaces: Vec<Surface> = bodies.par_iter().map(surface).collect();
-    let mut changed = vec![true; bodies.len()];
+/// Parts bodies that are nearer than the sum of their shares to the sum of their depths. Bodies are named by the first part
+/// of their group and lie in the frame of its shape; `groups` says whose body each part has, `poses` where it stands. What
+/// one part of a group has to give way by, its body gives way by, and so all of them. Gives what was done to bodies that
+/// were not left as they were.
+pub fn relieve(
+    bodies: &mut BTreeMap<usize, Body>,
+    groups: &[usize],
+    poses: &[DAffine3],
+    aims: &[Aim],
+) -> BTreeMap<usize, Settled> {
+    let mut done: BTreeMap<usize, Settled> = BTreeMap::new();
+    let parts = |of: &dyn Fn(usize) -> bool| (0..groups.len()).filter(|&p| of(p)).collect::<Vec<_>>();
+    let stands = |bodies: &BTreeMap<usize, Body>, p: usize| surface(&bodies[&groups[p]].posed(&poses[p]));
+    let mut surfaces: Vec<Surface> = parts(&|_| true).into_par_iter().map(|p| stands(bodies, p)).collect();
+    let mut changed = vec![true; groups.len()];
     for _ in 0..ROUNDS {
-        let pushes = all_pushes(&surfaces, &changed, aims);
-        changed = pushes.iter().map(|p| !p.is_empty()).collect();
-        if !changed.contains(&true) {
+        let pushes = of_bodies(&all_pushes(&surfaces, &changed, aims), groups, poses);
+        if pushes.is_empty() {
             break;
         }
-        bodies.par_iter_mut().zip(&mut surfaces).zip(&mut done).zip(&pushes).zip(aims).for_each(
-            |((((b, s), d), pushes), aim)| {
-                if !pushes.is_empty() {
-                    *d = Some(apply(b, pushes, aim.thinnest, d.take().unwrap_or_default()));
-                    *s = surface(b);
-                }
-            },
-        );
+        changed = groups.iter().map(|g| pushes.contains_key(g)).collect();
+        let moved: Vec<(&usize, Settled)> = bodies
+            .par_iter_mut()
+            .filter_map(|(g, b)| {
+                let before = done.get(g).cloned().unwrap_or_default();
+                Some((g, apply(b, pushes.get(g)?, aims[*g].thinnest, before)))
+            })
+            .collect();
+        done.extend(moved.into_iter().map(|(g, settled)| (*g, settled)));
+        let again = parts(&|p| changed[p]);
+        let moved: Vec<Surface> = again.par_iter().map(|&p| stands(bodies, p)).collect();
+        again.into_iter().zip(moved).for_each(|(p, s)| surfaces[p] = s);
     }
     done
+}
+
+/// For each body, the farthest push of each corner among its parts, in its own frame.
+fn of_bodies(
+    pushes: &[BTreeMap<u32, Push>],
+    groups: &[usize],
+    poses: &[DAffine3],
+) -> BTreeMap<usize, BTreeMap<u32, Push>> {
+    let mut all: BTreeMap<usize, BTreeMap<u32, Push>> = BTreeMap::new();
+    for ((pushes, &group), pose) in pushes.iter().zip(groups).zip(poses) {
+        let back = pose.matrix3.transpose();
+        for (&corner, push) in pushes {
+            keep(all.entry(group).or_default(), corner, Push { outward: back * push.outward, by: push.by });
+        }
+    }
+    all
 }
 
 fn surface(body: &Body) -> Surface {
@@ -136,10 +164,14 @@ fn share(s: &Surface, triangle: u32, at: DVec3, push: Push, pushes: &mut BTreeMa
     let square = weights.length_squared();
     for (k, &v) in s.mesh.triangles[triangle as usize].iter().enumerate() {
         let by = push.by * weights[k] / square;
-        let old = pushes.get(&s.corner_of[v as usize]).map_or(0.0, |p| p.by);
-        if by > old {
-            pushes.insert(s.corner_of[v as usize], Push { outward: push.outward, by });
-        }
+        keep(pushes, s.corner_of[v as usize], Push { outward: push.outward, by });
+    }
+}
+
+/// The farther push of a corner; the first of equals.
+fn keep(pushes: &mut BTreeMap<u32, Push>, corner: u32, push: Push) {
+    if push.by > pushes.get(&corner).map_or(0.0, |p| p.by) {
+        pushes.insert(corner, push);
     }
 }
 

@@ -162,12 +162,10 @@ struct Bought<'a> {
 /// `None` for what is no purchase: volumes that nothing is weighed for, wax of patterns (that of the tree has it), and the
 /// mix of powder and water, which stand for themselves.
 fn bought<'a>(m: &'a MoldSheet, v: &'a Volume, process: &'a Process) -> Option<Bought<'a>> {
-    let one = |material, extra, note| Some(Bought { material, extra, note, count: 1 });
+    let one = |material, extra, note| Some(Bought { material, extra, note, count: m.times(v) });
     if let Some(material) = v.of.strip_prefix(CASTING) {
-        // Every part of the shape is a casting; a gang makes some at once.
-        let pours = m.parts.len().div_ceil(m.castings.max(1));
-        let bought =
-            Bought { material, extra: POUR_EXTRA, note: "a pour each, with a tenth to spare", count: pours };
+        let note = "a pour each, with a tenth to spare";
+        let bought = Bought { material, extra: POUR_EXTRA, note, count: m.times(v) };
         return (process.route != Route::LostWax).then_some(bought);
     }
     match v.of.as_str() {

@@ -12,7 +12,7 @@ use crate::files::Batch;
 use crate::make::{Cavity, FabError, Output, Recipe};
 use crate::mesh::Mesh;
 use crate::mold::figures::Figures;
-use crate::mold::{self, Mold, MoldError, MoldReport, MoldSpec};
+use crate::mold::{self, Mold, MoldError, MoldReport, MoldSpec, Volume};
 use crate::process::Route;
 use crate::report::{Finding, MoldFile, Place, Severity};
 use crate::shape::Job;
@@ -25,10 +25,19 @@ pub struct MoldSheet {
     /// The parts that it serves.
     pub parts: Vec<String>,
     pub process: String,
-    /// Castings at once.
+    /// Castings at once, and how often it is filled so that each of the parts has one.
     pub castings: usize,
+    pub pours: usize,
     #[serde(flatten)]
     pub report: MoldReport,
+}
+
+impl MoldSheet {
+    /// How often a volume is poured or mixed: with each filling, or once where it makes the mold.
+    pub fn times(&self, v: &Volume) -> usize {
+        let each = self.report.route == mold::Route::LostWax || v.of.starts_with(poured::CASTING);
+        if each { self.pours } else { 1 }
+    }
 }
 
 /// Where molds lie in a package.
@@ -81,7 +90,8 @@ pub fn molds(
                 Some(Ok((mold, mut report))) => {
                     batch.commit()?;
                     let pattern = output.masters[p].as_ref().map_or(0.0, Mesh::volume);
-                    poured::add(&mut report, &mold, process, pattern * parts.len() as f64);
+                    let castings = mold.castings;
+                    poured::add(&mut report, &mold, process, pattern * castings as f64);
                     printed.extend(prints_of(mold, &part.process));
                     if let Some(programs) = &recipe.programs {
                         mold::check_openscad(&mut report, &place, &programs.openscad);
@@ -89,7 +99,8 @@ pub fn molds(
                     let sheet = MoldSheet {
                         parts: parts.clone(),
                         process: part.process.clone(),
-                        castings: count,
+                        castings,
+                        pours: parts.len().div_ceil(castings.max(1)),
                         report,
                     };
                     keep(package, sheet);

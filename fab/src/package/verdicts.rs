@@ -3,7 +3,7 @@
 //!
 //! Not promised: that a slicer's pass means a good print; it slices thin walls and overlaps without a word.
 
-use super::{LayingReport, PackageReport};
+use super::PackageReport;
 use crate::check::slicer::{self, Slicing};
 use crate::check::{Check, Outcome};
 use crate::make::Recipe;
@@ -54,7 +54,7 @@ pub fn collect(package: &mut PackageReport) {
     let plates = package.plates.iter().flat_map(|p| p.checks.iter().map(|c| (p.file.as_str(), c)));
     let assembly = package.assembly.iter().flat_map(|a| a.checks.iter().map(|c| (a.file.as_str(), c)));
     let mut found: Vec<Finding> = plates.chain(assembly).filter_map(|(file, c)| of_check(file, c)).collect();
-    found.extend(of_layings(&package.layings));
+    found.extend(of_layings(package));
     package.report.findings.extend(found);
     package.report.findings.sort_by_key(|f| std::cmp::Reverse(f.severity));
 }
@@ -70,9 +70,9 @@ fn of_check(file: &str, check: &Check) -> Option<Finding> {
 }
 
 /// One finding for all parts that stand on nothing flat.
-fn of_layings(layings: &[LayingReport]) -> Option<Finding> {
-    let tips = layings.iter().filter(|l| l.laying.footing == super::laying::Footing::Tips);
-    let parts: Vec<String> = tips.map(|l| l.part.clone()).collect();
+fn of_layings(package: &PackageReport) -> Option<Finding> {
+    let tips = package.layings.iter().filter(|l| l.laying.footing == super::laying::Footing::Tips);
+    let parts: Vec<String> = tips.flat_map(|l| package.report.alike(&l.part)).collect();
     (!parts.is_empty()).then(|| Finding {
         severity: Severity::Warning,
         place: Place { parts, at: vec![] },

@@ -20,6 +20,7 @@ const EMBEDDED: [(&str, &str); 11] = [
 ];
 
 const MATERIALS: &str = include_str!("../../processes/materials.toml");
+const MELTS: &str = include_str!("../../processes/melts.toml");
 const BEDS: &str = include_str!("../../processes/beds.toml");
 
 /// Sides that a bed may have, mm: from a microscope's stage to a gantry.
@@ -51,6 +52,13 @@ pub(super) fn find(which: &str) -> Result<Process, ProcessError> {
 /// Materials of cavities with what each bears, C.
 pub(super) fn materials() -> Vec<(String, Figure)> {
     read::list(MATERIALS, "material", |m| (m.text("name"), read::bears(m)))
+}
+
+/// From what heat on a material is liquid, C, by the first word of the list that its name holds; `None` of what is not known.
+pub(super) fn liquid(material: &str) -> Option<Figure> {
+    let all = read::list(MELTS, "melt", |m| (m.text("word"), read::figure(m, "liquid", super::sense::HEAT)));
+    let name = material.to_lowercase();
+    all.into_iter().find(|(word, _)| name.contains(word.as_str())).map(|(_, liquid)| liquid)
 }
 
 /// The beds that come with the program.

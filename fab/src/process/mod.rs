@@ -147,6 +147,8 @@ pub struct Cavity {
     pub pour: Figure,
     /// What the cavity bears, C.
     pub bears: Figure,
+    /// From what heat on it is liquid, C; `None` of what does not melt, or of which it is not known.
+    pub liquid: Option<Figure>,
 }
 
 /// One line of the cast schedule, in order.
@@ -155,6 +157,8 @@ pub struct Instruction {
     pub stage: String,
     #[serde(rename = "do")]
     pub what: String,
+    /// The material that is to be liquid at the figure's heat.
+    pub melts: Option<String>,
     pub figure: Option<Figure>,
 }
 
@@ -181,8 +185,9 @@ pub struct Process {
 /// The user's own figures; they replace those of the file.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Overrides {
-    /// mm for each face.
+    /// mm for each face, of every process; and of single ones, by their names, which come first.
     pub clearance: Option<f64>,
+    pub clearances: BTreeMap<String, f64>,
     /// Per cent, by the name of the step.
     pub shrinkage: BTreeMap<String, f64>,
     /// Lengths of the coupon that were measured.

@@ -33,21 +33,25 @@ fn process(top: &mut Cursor) -> Process {
     let (name, title) = (top.text("name"), top.text("title"));
     let word = top.text_of("route", &names);
     let route = Route::ALL.iter().find(|r| r.0 == word).map_or(Route::Print, |r| r.1);
+    let material = top.text("material");
+    let cavity = match (route, top.has("cavity")) {
+        (Route::Print, false) => None,
+        _ => Some(top.table("cavity", |t| cavity(t, &material))),
+    };
+    let line = |t: &mut Cursor| instruction(t, &material, cavity.as_ref());
+    let schedule = if top.has("schedule") { top.each("schedule", line) } else { vec![] };
     let process = Process {
         name,
         title,
         route,
-        material: top.text("material"),
         clearance: figure(top, "clearance", sense::CLEARANCE),
         least_wall: figure(top, "least_wall", sense::WALL),
         density: figure(top, "density", sense::DENSITY),
         print: top.table("print", print),
-        cavity: match (route, top.has("cavity")) {
-            (Route::Print, false) => None,
-            _ => Some(top.table("cavity", cavity)),
-        },
         steps: top.each("step", step),
-        schedule: if top.has("schedule") { top.each("schedule", instruction) } else { vec![] },
+        material,
+        cavity,
+        schedule,
     };
     sense::together(top, &process);
     top.refuse_others(
@@ -76,7 +80,7 @@ fn print(t: &mut Cursor) -> Print {
     print
 }
 
-fn cavity(t: &mut Cursor) -> Cavity {
+fn cavity(t: &mut Cursor, poured: &str) -> Cavity {
     let materials = library::materials();
     let names: Vec<&str> = materials.iter().map(|m| m.0.as_str()).collect();
     let material = t.text_of("material", &names);
@@ -89,11 +93,18 @@ fn cavity(t: &mut Cursor) -> Cavity {
             "what is poured at {} C finds a cavity of {material}, which bears no more than {} C ({})",
             pour.value, bears.value, bears.source
         );
-        t.fault("material", what, "take a cavity that bears it: silicone for wax, investment for metal");
+        let hint = match material.as_str() {
+            "investment" => {
+                "gypsum breaks down there, and no other investment is known here: take a metal that pours colder"
+            }
+            _ => "take a cavity that bears it: silicone for wax, investment for metal",
+        };
+        t.fault("material", what, hint);
     }
+    sense::is_liquid(t, "pour", poured, pour.value);
     t.refuse_others("[cavity] has material and pour");
     let bears = bears.unwrap_or_else(|| Figure { value: f64::NAN, ..pour.clone() });
-    Cavity { material, pour, bears }
+    Cavity { material, pour, bears, liquid: library::liquid(poured) }
 }
 
 fn step(t: &mut Cursor) -> Step {
@@ -104,7 +115,7 @@ fn step(t: &mut Cursor) -> Step {
     step
 }
 
-fn instruction(t: &mut Cursor) -> Instruction {
+fn instruction(t: &mut Cursor, material: &str, cavity: Option<&Cavity>) -> Instruction {
     let (stage, what) = (t.text("stage"), t.text("do"));
     let figure = t.has("figure").then(|| {
         t.table("figure", |f| {
@@ -114,8 +125,13 @@ fn instruction(t: &mut Cursor) -> Instruction {
             figure_here(f, "figure", kind)
         })
     });
-    t.refuse_others("a line of the schedule has stage, do and figure");
-    Instruction { stage, what, figure }
+    let melts = t.has("melts").then(|| t.text("melts"));
+    if let Some(melted) = &melts {
+        let pour = cavity.filter(|_| melted == material).map(|c| c.pour.value);
+        sense::melting(t, melted, figure.as_ref(), pour);
+    }
+    t.refuse_others("a line of the schedule has stage, do, melts and figure");
+    Instruction { stage, what, melts, figure }
 }
 
 /// A figure of the workshop below the key, in the bounds of its kind.

@@ -177,6 +177,38 @@ fn cast(top: &mut Cursor, p: &Process) {
     }
 }
 
+/// What is poured is liquid, where it is known when it is.
+pub(super) fn is_liquid(t: &mut Cursor, key: &str, material: &str, celsius: f64) {
+    let Some(liquid) = library::liquid(material).filter(|l| celsius < l.low) else { return };
+    let what = format!(
+        "{material} is to be poured at {celsius} C, and is not liquid below {} C ({}, grade {})",
+        liquid.low,
+        liquid.source,
+        liquid.grade.sign()
+    );
+    t.fault(
+        key,
+        what,
+        "pour it hotter: some tens of degrees more, so that it fills the mold before it freezes",
+    );
+}
+
+/// A line of the schedule at whose heat a material is liquid; `pour`: at what it goes into the cavity, where it is that.
+pub(super) fn melting(t: &mut Cursor, material: &str, figure: Option<&Figure>, pour: Option<f64>) {
+    let Some(heat) = figure.filter(|f| f.unit == HEAT.unit) else {
+        let what = format!("a line melts {material}, and has no figure in {}", HEAT.unit);
+        return t.fault("melts", what, "give the line its figure, or take out melts");
+    };
+    is_liquid(t, "figure", material, heat.value);
+    if let Some(pour) = pour.filter(|p| p.is_finite() && heat.value.is_finite() && *p != heat.value) {
+        let what = format!(
+            "the schedule pours {material} at {} C, and the cavity is said to be filled at {pour} C",
+            heat.value
+        );
+        t.fault("figure", what, "give the same figure here and in [cavity.pour]");
+    }
+}
+
 const FITTING_ROUTE: &str =
     "cast-direct: PLA, PETG, ABS or resin; cast: silicone; lost-wax and lost-print: investment";
 
@@ -189,7 +221,8 @@ pub(super) fn overrule(process: &mut Process, own: &Overrides) -> Vec<FileFault>
         }
     };
     let kinds: Vec<Bounds> = (0..process.steps.len()).map(|k| shrinkage_in(process, k)).collect();
-    user(&mut process.clearance, own.clearance, CLEARANCE, "clearance", &mut faults);
+    let clearance = own.clearances.get(&process.name).copied().or(own.clearance);
+    user(&mut process.clearance, clearance, CLEARANCE, "clearance", &mut faults);
     user(&mut process.print.elephant_foot, own.elephant_foot, SHAVING, "elephant_foot", &mut faults);
     user(&mut process.print.flatten, own.flatten, SHAVING, "flatten", &mut faults);
     for (name, &value) in &own.shrinkage {

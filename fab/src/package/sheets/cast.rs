@@ -2,9 +2,11 @@
 //!
 //! Not promised: volumes of sprues, boxes and flasks where no mold was made for the part.
 
+use super::molds::use_of;
 use super::table::{range, short, table, value};
 use crate::make::MM3_IN_CM3;
-use crate::package::PackageReport;
+use crate::mold::Volume;
+use crate::package::{MoldSheet, PackageReport};
 use crate::process::{Instruction, Route};
 use crate::report::RouteReport;
 
@@ -23,21 +25,38 @@ pub fn sheet(p: &PackageReport) -> Option<String> {
         s += &format!("\n## {} ({})\n\nParts: {}.\n", r.process.title, r.process.name, r.parts.join(", "));
         if let Some(c) = &r.process.cavity {
             s += &format!(
-                "\nPoured at {} into {}, which bears {} ({}, grade {}).\n",
+                "\nPoured at {} into {}, which bears {} ({}, grade {}){}.\n",
                 value(&c.pour),
                 c.material,
                 value(&c.bears),
                 c.bears.source,
-                c.bears.grade.sign()
+                c.bears.grade.sign(),
+                liquid(r)
             );
         }
+        let own = p.mold_sheets.iter().filter(|m| m.process == r.process.name);
+        let line =
+            |m: &MoldSheet| format!("- {}: for {}. {}\n", m.report.name, m.parts.join(", "), use_of(m));
+        s += &format!("\n{}", own.map(line).collect::<String>());
         s += &schedule(&r.process.schedule);
     }
     if !p.mold_sheets.is_empty() {
         s += "\nWhat is done with one mold (boxes and their pours, tree, flask), step by step: [3-molds.md](3-molds.md).\n";
     }
-    s += &format!("\nMolds: {}\n", p.report.molds_note);
+    s += &format!("\nMolds: {}.\n", p.report.molds_note);
     Some(s)
+}
+
+/// From what heat on what is poured is liquid, in a sentence.
+fn liquid(r: &RouteReport) -> String {
+    let known = r.process.cavity.as_ref().and_then(|c| c.liquid.as_ref());
+    let said = |f: &crate::process::Figure| {
+        let (material, grade) = (&r.process.material, f.grade.sign());
+        let upto =
+            if f.high > f.low { format!(", by its grade up to {} \u{b0}C", f.high) } else { String::new() };
+        format!("; {material} is liquid from {} \u{b0}C{upto} ({}, grade {grade})", f.low, f.source)
+    };
+    known.map_or(String::new(), said)
 }
 
 fn schedule(lines: &[Instruction]) -> String {
@@ -69,12 +88,14 @@ pub fn pour(p: &PackageReport) -> Option<String> {
         s += &format!("\n## {}\n", r.process.title);
         for m in p.mold_sheets.iter().filter(|m| m.process == r.process.name && !m.report.volumes.is_empty())
         {
-            s += &format!("\n{}, with sprues, runners and boxes:\n", m.report.name);
-            let grams = |v: &crate::mold::Volume| v.grams.map_or(String::new(), |g| format!("{g:.1}"));
-            let cm3 =
-                |v: &crate::mold::Volume| if v.mm3 > 0.0 { short(v.mm3 / MM3_IN_CM3) } else { String::new() };
-            let row = |v: &crate::mold::Volume| vec![v.of.clone(), cm3(v), grams(v)];
-            s += &table(&["volume", "cm3", "g"], m.report.volumes.iter().map(row));
+            s += &format!(
+                "\n{}, with sprues, runners and boxes, for {}. {}\n",
+                m.report.name,
+                m.parts.join(", "),
+                use_of(m)
+            );
+            let head = ["volume", "cm3", "g", "times", "g in all"];
+            s += &table(&head, m.report.volumes.iter().map(|v| volume(m, v)));
         }
         let parts = p.report.parts.iter().filter(|q| q.file.is_some() && r.parts.contains(&q.id));
         let row = |q: &crate::report::PartReport| {
@@ -87,6 +108,15 @@ pub fn pour(p: &PackageReport) -> Option<String> {
         s += &metal(p, r);
     }
     Some(s)
+}
+
+/// What is poured once and with each filling; a cavity without a mass is only to compare with.
+fn volume(m: &MoldSheet, v: &Volume) -> Vec<String> {
+    let times = m.times(v);
+    let cm3 = if v.mm3 > 0.0 { short(v.mm3 / MM3_IN_CM3) } else { String::new() };
+    let grams = |times: usize| v.grams.map_or(String::new(), |g| format!("{:.1}", g * times as f64));
+    let count = v.grams.map_or(String::new(), |_| times.to_string());
+    vec![v.of.clone(), cm3, grams(1), count, grams(times)]
 }
 
 /// Of all parts and trees of a route together.

@@ -82,7 +82,7 @@ pub fn coupon(p: &PackageReport) -> String {
     );
     let several = p.coupons.len() > 1;
     if several {
-        s += "\n`--clearance` holds for every process; for one of several, put the figure into a copy of its file (`weavelock processes NAME > my.toml`), and give the copy a name of its own. `--measured PROCESS:STEP=LENGTH` holds for that process alone.\n";
+        s += "\n`--clearance` without a name holds for every process, `--clearance \"PROCESS=LENGTH\"` for that one alone (`[fab.clearances]` in the spec); likewise `--measured PROCESS:STEP=LENGTH`.\n";
     }
     for CouponReport { process, coupon: c } in &p.coupons {
         let Some(r) = p.report.routes.iter().find(|r| r.process.name == *process) else { continue };
@@ -110,8 +110,10 @@ pub fn coupon(p: &PackageReport) -> String {
         };
         s += &table(&["notch", "width as drawn", "air on each face"], c.notches.iter().map(notch));
         s += &format!(
-            "The key is {:.2} mm wide; built in now: {} mm on each face.\n",
-            c.key_mm, r.process.clearance.value
+            "The key is {:.2} mm wide; built in now: {} mm on each face; yours goes into `--clearance \"{}... mm\"`.\n",
+            c.key_mm,
+            r.process.clearance.value,
+            if several { format!("{process}=") } else { String::new() }
         );
     }
     s

@@ -4,7 +4,7 @@
 
 use super::table::{short, table};
 use crate::mold::{Measured, MoldReport, Parting, Route, Step, Volume, WrittenPiece};
-use crate::package::PackageReport;
+use crate::package::{MoldSheet, PackageReport};
 
 /// `None` where there is no mold.
 pub fn sheet(p: &PackageReport) -> Option<String> {
@@ -16,8 +16,14 @@ pub fn sheet(p: &PackageReport) -> Option<String> {
         p.report.name
     );
     for m in &p.mold_sheets {
-        s += &format!("\n## {} ({})\n\nFor: {}.\n", m.report.name, m.process, m.parts.join(", "));
-        s += &mold(&m.report);
+        s += &format!(
+            "\n## {} ({})\n\nFor: {}. {}\n",
+            m.report.name,
+            m.process,
+            m.parts.join(", "),
+            use_of(m)
+        );
+        s += &mold(&m.report, &m.parts[0]);
         if m.report.route == Route::LostWax {
             s += "\nHeats and times of burnout and pour: [4-cast.md](4-cast.md), by the process.\n";
         }
@@ -25,11 +31,30 @@ pub fn sheet(p: &PackageReport) -> Option<String> {
     Some(s)
 }
 
-fn mold(m: &MoldReport) -> String {
+/// How often a mold is filled, in a sentence.
+pub fn use_of(m: &MoldSheet) -> String {
+    let same =
+        if m.parts.len() > 1 { "One solid, turned and shifted: any of them takes any casting. " } else { "" };
+    let spare = match m.castings * m.pours - m.parts.len() {
+        0 => String::new(),
+        n => format!(", {n} to spare"),
+    };
+    match (m.report.route, m.castings, m.pours) {
+        (Route::LostWax, 1, _) => "The tree holds its pattern.".to_string(),
+        (Route::LostWax, n, 1) => format!("{same}The tree holds all {n} patterns."),
+        (Route::LostWax, n, t) => format!("{same}{t} trees of {n} patterns each, in a flask each{spare}."),
+        (_, 1, 1) => "It is filled once.".to_string(),
+        (_, 1, n) => format!("{same}It is made once and filled {n} times."),
+        (_, k, 1) => format!("{same}It is filled once, {k} castings at once{spare}."),
+        (_, k, n) => format!("{same}It is made once and filled {n} times, {k} castings at once{spare}."),
+    }
+}
+
+fn mold(m: &MoldReport, first: &str) -> String {
     let d = m.pull.direction;
     let mut s = String::new();
     let opens = format!(
-        "\nOpens along ({}, {}, {}) of the part as it stands in the assembly. {} directions were looked at: {}. Undercut: {} mm2, {} mm deep. Faces with less draft than the {} degrees that are asked for: {} mm2.\n",
+        "\nOpens along ({}, {}, {}) of {first} as it stands in the assembly. {} directions were looked at: {}. Undercut: {} mm2, {} mm deep. Faces with less draft than the {} degrees that are asked for: {} mm2.\n",
         short(d.x),
         short(d.y),
         short(d.z),

@@ -15,6 +15,7 @@ pub fn sheet(p: &PackageReport) -> String {
     }
     s += "\nEvery file is in millimetres. **Clearance and shrinkage are built in: scale nothing, print at 100 %.**\n";
     s += &routes(p);
+    s += &molds(p);
     s += "\n## Order of the work\n\n";
     for (k, step) in steps(p).iter().enumerate() {
         s += &format!("{}. {step}\n", k + 1);
@@ -60,6 +61,16 @@ fn routes(p: &PackageReport) -> String {
         ]
     };
     table(&["made by", "of", "air on each face", "scale built in", "parts"], p.report.routes.iter().map(row))
+}
+
+/// Which mold makes which parts, and how often it is filled.
+fn molds(p: &PackageReport) -> String {
+    let row = |m: &crate::package::MoldSheet| {
+        let words = [m.report.name.clone(), m.parts.join(", ")];
+        [words, [m.castings.to_string(), m.pours.to_string()]].concat()
+    };
+    let head = ["mold", "parts that it makes", "castings at once", "times filled"];
+    if p.mold_sheets.is_empty() { String::new() } else { table(&head, p.mold_sheets.iter().map(row)) }
 }
 
 fn steps(p: &PackageReport) -> Vec<String> {
