@@ -24,6 +24,7 @@ pub mod mold;
 pub mod near;
 pub mod offset;
 pub mod package;
+mod pieces;
 pub mod pinch;
 pub mod process;
 pub mod report;

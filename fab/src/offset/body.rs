@@ -46,7 +46,7 @@ pub struct Body {
 
 /// Along a flat ridge between a kept and a moved facet a corner would run away sideways; beyond this many clearances
 /// the kept facet is let dip instead. 4 is a ridge within 14.5 degrees of flat (1 / sin).
-const LONGEST_RUN: f64 = 4.0;
+pub(super) const LONGEST_RUN: f64 = 4.0;
 
 /// Kept facets whose normals differ by less than this (radians) are one plane: above the round-off of the normals,
 /// and a tilt that raises a 100 mm facet by less than a ten-thousandth of a millimetre.

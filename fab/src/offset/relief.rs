@@ -2,8 +2,8 @@
 //!
 //! The move of `body` leaves the fit between facets that share a patch. It can not know of parts that meet only in an
 //! edge or a corner, of facets that come near one another across a narrow third, or of what a collapse dropped; here
-//! the distances themselves say so. Not complete: it stops after a fixed number of rounds, and the gap that is measured
-//! on the files decides whether it was enough.
+//! the distances themselves say so. Not complete: it stops after a fixed number of rounds and says where bodies are still
+//! nearer; the gap that is measured on the files decides.
 
 use super::Aim;
 use super::body::Body;
@@ -37,22 +37,36 @@ struct Surface {
     tree: Bvh,
 }
 
-/// Parts bodies that are nearer than the sum of their shares to the sum of their depths. Gives, for each body, what was
-/// done to it, or `None` where it was left as it was.
-pub fn relieve(bodies: &mut [Body], aims: &[Aim]) -> Vec<Option<Settled>> {
-    let mut done: Vec<Option<Settled>> = vec![None; bodies.len()];
+/// What the parting did to a body.
+#[derive(Clone, Debug, Default)]
+pub struct Relief {
+    /// `None` where it was left as it was.
+    pub settled: Option<Settled>,
+    /// A corner of each triangle that is still nearer to another body than the shares.
+    pub near: Vec<DVec3>,
+}
+
+/// Parts bodies that are nearer than the sum of their shares to the sum of their depths.
+pub fn relieve(bodies: &mut [Body], aims: &[Aim]) -> Vec<Relief> {
+    let mut done: Vec<Relief> = vec![Relief::default(); bodies.len()];
     let mut surfaces: Vec<Surface> = bodies.par_iter().map(surface).collect();
     let mut changed = vec![true; bodies.len()];
-    for _ in 0..ROUNDS {
+    for round in 0..=ROUNDS {
         let pushes = all_pushes(&surfaces, &changed, aims);
         changed = pushes.iter().map(|p| !p.is_empty()).collect();
         if !changed.contains(&true) {
             break;
         }
+        if round == ROUNDS {
+            let corners =
+                |(b, p): (&Body, &BTreeMap<u32, Push>)| p.keys().map(|&c| b.corners[c as usize].at).collect();
+            done.iter_mut().zip(bodies.iter().zip(&pushes)).for_each(|(d, bp)| d.near = corners(bp));
+            break;
+        }
         bodies.par_iter_mut().zip(&mut surfaces).zip(&mut done).zip(&pushes).zip(aims).for_each(
             |((((b, s), d), pushes), aim)| {
                 if !pushes.is_empty() {
-                    *d = Some(apply(b, pushes, aim.thinnest, d.take().unwrap_or_default()));
+                    d.settled = Some(apply(b, pushes, aim.thinnest, d.settled.take().unwrap_or_default()));
                     *s = surface(b);
                 }
             },

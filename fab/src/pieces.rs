@@ -1,0 +1,179 @@
+//! Takes a job and its recipe; gives each part on its way to the file: its faces moved, on the master, as f32 can hold it.
+//!
+//! The exact move first, over coarser and coarser edges; where that fails the part is carved; where that fails too, it is
+//! eroded on a lattice. Not promised: that more than one body, or none, is left. A piece with faults is not to be written,
+//! and the gaps of the others are measured on their files.
+
+use crate::bvh::Aabb;
+use crate::files::{stems, stl};
+use crate::findings;
+use crate::ledger::Scale;
+use crate::make::{MARGIN_IN_SNAPS, Piece, Recipe};
+use crate::mesh::Mesh;
+use crate::offset::lattice::{Off, eroded};
+use crate::offset::{self, Aim, By, Failure, Known, Offset, Why};
+use crate::package::laying::{again, lay};
+use crate::process::Process;
+use crate::report::Finding;
+use crate::shape::{Job, Role, Shape};
+use crate::shave::{self, Shaving};
+use crate::solid::Solid;
+use glam::DVec3;
+use rayon::prelude::*;
+
+/// The least altitude of a triangle, in snap distances: snapping moves three corners by one each, so that 4 can not turn
+/// a triangle over.
+const THINNEST_IN_SNAPS: f64 = 4.0;
+
+/// Where the exact move fails, edges so many times longer are united first, and so many times: 0.02, 0.08, 0.32 and 1.28
+/// of the depth. What a weld costs in clearance `relief` mends, and the gap is measured all the same.
+const COARSER: (f64, usize) = (4.0, 3);
+
+/// A part that is carved may leave too little room for one that was moved, which is then carved too; so often.
+const CARVINGS: usize = 2;
+
+pub(crate) fn pieces(job: &Job, recipe: &Recipe, snap: f64, scales: Vec<Scale>) -> Vec<Piece> {
+    let mut known = Known::default();
+    let mut aims: Vec<Aim> =
+        job.parts.iter().map(|p| aim(recipe.process_of(&p.id).clearance.value, snap)).collect();
+    let mut best = attempt(job, &aims, &scales, &mut known);
+    for step in 0..COARSER.1 + CARVINGS {
+        if best.iter().all(|p| p.faults.is_empty()) {
+            break;
+        }
+        let next: Vec<Aim> =
+            aims.iter().zip(&best).map(|(aim, piece)| harder(aim, &piece.faults, step)).collect();
+        let mut again = attempt(job, &next, &scales, &mut known);
+        tell(&next, &best, &mut again);
+        aims = next;
+        // What carving says of a part is the last word on it.
+        if faulty(&again) < faulty(&best) + usize::from(step >= COARSER.1) {
+            best = again;
+        }
+    }
+    for p in 0..best.len() {
+        if let Some(piece) = last_resort(job, p, &best, &aims) {
+            best[p] = piece;
+        }
+    }
+    best.par_iter_mut().zip(&job.parts).for_each(|(piece, part)| shave(recipe.process_of(&part.id), piece));
+    best
+}
+
+fn aim(clearance: f64, snap: f64) -> Aim {
+    let depth = clearance + MARGIN_IN_SNAPS * snap;
+    let weld = depth * offset::REACH;
+    Aim { depth, share: clearance + snap, thinnest: THINNEST_IN_SNAPS * snap, weld, by: By::Moving }
+}
+
+/// What to try next where that failed.
+fn harder(aim: &Aim, faults: &[Finding], step: usize) -> Aim {
+    match faults {
+        [] => *aim,
+        _ if step < COARSER.1 => Aim { weld: aim.weld * COARSER.0, ..*aim },
+        _ => Aim { by: By::Carving, ..*aim },
+    }
+}
+
+fn attempt(job: &Job, aims: &[Aim], scales: &[Scale], known: &mut Known) -> Vec<Piece> {
+    let stems = stems(&job.parts.iter().map(|p| p.id.clone()).collect::<Vec<_>>());
+    let all: Vec<_> = job.parts.iter().zip(stems).zip(offset::offset(job, aims, known)).zip(scales).collect();
+    all.into_par_iter()
+        .map(|(((part, stem), offset), scale)| piece(&part.id, stem, offset, scale.clone()))
+        .collect()
+}
+
+/// Notes what is carved, and for what fault of the move.
+fn tell(aims: &[Aim], before: &[Piece], pieces: &mut [Piece]) {
+    for ((aim, before), piece) in aims.iter().zip(before).zip(pieces) {
+        match aim.by {
+            By::Carving if before.notes.is_empty() => {
+                piece.notes.push(findings::of_carving(&piece.id, &before.faults, piece.offset.longest_move));
+            }
+            By::Carving => piece.notes = before.notes.clone(),
+            By::Moving => {}
+        }
+    }
+}
+
+/// A faulty piece eroded on a lattice, or what is wrong with that: the last word on it.
+fn last_resort(job: &Job, p: usize, pieces: &[Piece], aims: &[Aim]) -> Option<Piece> {
+    let failed = &pieces[p];
+    if failed.faults.is_empty() {
+        return None;
+    }
+    let part = in_place(job, p, |_| true);
+    // What came in wrong is told as that, not made of lattice.
+    if !findings::of_mesh(&failed.id, &stl::snapped(&part), &failed.scale).is_empty() {
+        return None;
+    }
+    let mut failures = vec![];
+    let (mesh, step) = match eroded(&part, &surroundings(job, p, &part, pieces, aims)) {
+        Some(left) => (Solid::of(&left.mesh).ok()?.thick(left.step).mesh(), left.step),
+        None => (Mesh::default(), 0.0),
+    };
+    if mesh.triangles.is_empty() {
+        let at = part.vertices.iter().sum::<DVec3>() / part.vertices.len().max(1) as f64;
+        failures.push(Failure { at, why: Why::Vanished });
+    }
+    let longest_move = offset::deepest(&mesh, &part);
+    let offset = Offset { mesh, collapses: 0, longest_move, same_as: p, failures };
+    let mut made = piece(&failed.id, failed.stem.clone(), offset, failed.scale.clone());
+    if made.offset.failures.is_empty() {
+        made.notes.push(findings::of_lattice(&failed.id, &failed.faults, step, longest_move));
+    } else {
+        made.faults.truncate(made.offset.failures.len());
+    }
+    Some(made)
+}
+
+/// What a part is to keep off: its own contact faces, and the others near it as they are made. Those that are not made yet
+/// keep off it in their turn, and for now it leaves them its own depth.
+fn surroundings(job: &Job, p: usize, part: &Mesh, pieces: &[Piece], aims: &[Aim]) -> Vec<Off> {
+    let faces = Off { surface: in_place(job, p, |r| *r != Role::Outer), by: aims[p].depth };
+    let other = |q: usize| match pieces[q].faults[..] {
+        [] => Off { surface: pieces[q].offset.mesh.clone(), by: aims[p].depth + aims[q].depth },
+        _ => Off { surface: in_place(job, q, |_| true), by: aims[p].depth },
+    };
+    let place = Aabb::of(part.vertices.iter().copied());
+    let near = |o: &Off| place.distance_squared(&Aabb::of(o.surface.vertices.iter().copied())) < o.by.powi(2);
+    let others = (0..pieces.len()).filter(|&q| q != p).map(other).filter(near);
+    std::iter::once(faces).chain(others).collect()
+}
+
+/// Facets of a part with these roles, in the assembly.
+fn in_place(job: &Job, p: usize, which: impl Fn(&Role) -> bool) -> Mesh {
+    let part = &job.parts[p];
+    let shape = &job.shapes[part.shape];
+    let facets = shape.facets.iter().zip(&part.roles).filter(|(_, r)| which(r)).map(|(f, _)| f.clone());
+    let some = Shape { vertices: shape.vertices.clone(), facets: facets.collect() };
+    some.mesh().map(|v| part.pose.transform_point3(v))
+}
+
+fn faulty(pieces: &[Piece]) -> usize {
+    pieces.iter().filter(|p| !p.faults.is_empty()).count()
+}
+
+fn piece(id: &str, stem: String, offset: Offset, scale: Scale) -> Piece {
+    let master = stl::snapped(&offset.mesh.map(|v| scale.up(v)));
+    let mut faults: Vec<Finding> = offset.failures.iter().map(|f| findings::of_failure(id, f)).collect();
+    faults.extend(findings::of_mesh(id, &master, &scale));
+    Piece { id: id.to_string(), stem, scale, offset, laid: None, master, made: None, faults, notes: vec![] }
+}
+
+/// Slice and chamfer of what is printed in the part's own shape.
+fn shave(process: &Process, piece: &mut Piece) {
+    let print = &process.print;
+    let what = Shaving { flatten: print.flatten.value, chamfer: print.elephant_foot.value };
+    if what.is_off() || !process.route.prints_the_shape() || !piece.faults.is_empty() {
+        return;
+    }
+    let laying = lay(&piece.master);
+    match shave::shaved(&piece.master, &laying, what) {
+        Ok(master) => {
+            piece.faults.extend(findings::of_mesh(&piece.id, &master, &piece.scale));
+            (piece.laid, piece.master) = (Some(again(&master, &laying)), master);
+        }
+        Err(why) => piece.notes.push(findings::of_shaving(&piece.id, &why)),
+    }
+}
