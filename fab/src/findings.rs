@@ -33,7 +33,7 @@ pub fn of_failure(id: &str, failure: &Failure) -> Finding {
         Why::TurnedOver => "the clearance turns a triangle over that no collapse could mend",
         Why::Vanished => "the clearance leaves nothing of this part",
         Why::Lost => "moving the faces would take away more of this part than a layer below them",
-        Why::Crosses => "carved by slabs, the part crosses itself once its corners are rounded for a file",
+        Why::NotSolid => "moving its faces fails, and it can not be carved: what came in is no closed solid",
         Why::TooNear => "the part stays nearer to another than the clearance of both",
     };
     error(id, vec![failure.at], format!("{what}; nothing is written for the part"), SMALLER)

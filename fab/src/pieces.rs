@@ -103,13 +103,14 @@ fn last_resort(job: &Job, p: usize, pieces: &[Piece], aims: &[Aim]) -> Option<Pi
         return None;
     }
     let part = in_place(job, p, |_| true);
-    // What came in wrong is told as that, not made of lattice.
-    if !findings::of_mesh(&failed.id, &stl::snapped(&part), &failed.scale).is_empty() {
+    // What came in wrong is told as that, not made of lattice; but where a body only touches itself, a clearance parts it.
+    let came = stl::snapped(&part);
+    if !came.is_pinched() && !findings::of_mesh(&failed.id, &came, &failed.scale).is_empty() {
         return None;
     }
     let mut failures = vec![];
     let (mesh, step) = match eroded(&part, &surroundings(job, p, &part, pieces, aims)) {
-        Some(left) => (Solid::of(&left.mesh).ok()?.thick(left.step).mesh(), left.step),
+        Some(left) => (left.mesh, left.step),
         None => (Mesh::default(), 0.0),
     };
     if mesh.triangles.is_empty() {
@@ -155,9 +156,17 @@ fn faulty(pieces: &[Piece]) -> usize {
 }
 
 fn piece(id: &str, stem: String, offset: Offset, scale: Scale) -> Piece {
-    let master = stl::snapped(&offset.mesh.map(|v| scale.up(v)));
-    let mut faults: Vec<Finding> = offset.failures.iter().map(|f| findings::of_failure(id, f)).collect();
-    faults.extend(findings::of_mesh(id, &master, &scale));
+    let finished = offset.mesh.map(|v| scale.up(v));
+    let mut master = stl::snapped(&finished);
+    let mut faults = findings::of_mesh(id, &master, &scale);
+    if !faults.is_empty() && offset.failures.is_empty() {
+        // What f32 can not hold apart is united; where that makes no sound mesh, the first is told.
+        let settled = Solid::of(&finished).ok().and_then(|s| stl::settled(&s)).map(|(mesh, _)| mesh);
+        if let Some(sound) = settled.filter(|m| findings::of_mesh(id, m, &scale).is_empty()) {
+            (master, faults) = (sound, vec![]);
+        }
+    }
+    faults.splice(0..0, offset.failures.iter().map(|f| findings::of_failure(id, f)));
     Piece { id: id.to_string(), stem, scale, offset, laid: None, master, made: None, faults, notes: vec![] }
 }
 

@@ -90,6 +90,16 @@ impl Body {
         body
     }
 
+    /// Every corner back where it came from, bound only by the planes that pass there: a sliver's normal is round-off, and its
+    /// plane may pass millimetres below its own corners.
+    pub fn as_it_came(mut self) -> Body {
+        for c in &mut self.corners {
+            (c.at, c.placed) = (c.anchor, true);
+            c.facets.retain(|&f| self.moved[f as usize].plane.excess(c.anchor) <= self.slack);
+        }
+        self
+    }
+
     /// The point nearest to `anchor` under the moved planes of `facets`. Kept facets stay planes where they leave room.
     pub fn place(&self, facets: &[u32], anchor: DVec3) -> Option<DVec3> {
         let planes = |contact: bool| {

@@ -4,12 +4,14 @@
 //! its tetrahedra are cut where they pass zero (marching tetrahedra: Doi and Koide 1991), so what comes out is closed and
 //! does not cross itself, whatever goes in. Sound by measurement: all its triangles keep off by the distance and are inside
 //! the part, or the cut goes deeper and is measured again. Not exact: faces go in by up to two steps of the lattice more, the
-//! kept ones too, and detail finer than a step is lost. Not promised: that what is left is one body.
+//! kept ones too, and detail and bodies finer than a step are lost. Not promised: that what is left is one body.
 
 use crate::bvh::Bvh;
 use crate::cross;
+use crate::files::stl;
 use crate::mesh::Mesh;
-use crate::near::{closer_than, on_triangle};
+use crate::near::{nearest, on_triangle};
+use crate::solid::Solid;
 use glam::DVec3;
 use rayon::prelude::*;
 
@@ -25,8 +27,10 @@ pub struct Eroded {
     pub step: f64,
 }
 
-/// Points of a lattice: 8 million distances are 64 MB, and the surface of a part of 50 mm then has steps of a quarter mm.
-const POINTS: f64 = 8_388_608.0;
+/// Points of a lattice, and squares of a step on the surface of the part, each of which makes about four triangles: bounds
+/// of some seconds. A part of 50 mm then has steps of half a mm.
+const POINTS: f64 = 4_194_304.0;
+const SQUARES: f64 = 32_768.0;
 
 /// A step is a part of the least distance to keep: two to resolve a face that goes in by it.
 const STEPS: f64 = 2.0;
@@ -48,13 +52,21 @@ pub fn eroded(part: &Mesh, off: &[Off]) -> Option<Eroded> {
     let whole = Bvh::new(part);
     let right = |mesh: &Mesh| {
         let tree = Bvh::new(mesh);
-        let clear = |(o, t): (&Off, &Bvh)| closer_than((mesh, &tree), (&o.surface, t), o.by).is_empty();
+        let clear = |(o, t): (&Off, &Bvh)| nearest((mesh, &tree), (&o.surface, t)).distance >= o.by;
         off.iter().zip(&trees).all(clear) && cross::between((mesh, &tree), (part, &whole)).is_empty()
     };
     let cut = DEEPER.iter().map(|deeper| lattice.cut(&field, deeper * lattice.step));
-    let mesh = cut.take_while(|m| !m.triangles.is_empty()).find(right)?;
+    let mesh = cut
+        .map_while(|m| Solid::of(&m).ok())
+        .flat_map(|s| [s.plain(lattice.step * ROUGH).thick(lattice.step), s.thick(lattice.step)])
+        .map(|s| s.mesh())
+        .find(|m| !m.triangles.is_empty() && right(m) && stl::is_plain(&stl::snapped(m)))?;
     Some(Eroded { mesh, step: lattice.step })
 }
+
+/// Triangles are united where that moves the surface by less than this part of a step; what it costs is measured with the
+/// rest.
+const ROUGH: f64 = 0.125;
 
 /// Points at multiples of the step, from `low` on.
 struct Lattice {
@@ -75,7 +87,7 @@ impl Lattice {
         loop {
             let low = (lo / step).floor() - DVec3::ONE;
             let n = ((hi / step).ceil() + DVec3::ONE - low) + DVec3::ONE;
-            if n.element_product() <= POINTS {
+            if n.element_product() <= POINTS && part.area() <= SQUARES * step * step {
                 return Some(Lattice { low, n: n.to_array().map(|x| x as usize), step });
             }
             step *= 2.0;

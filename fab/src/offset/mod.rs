@@ -87,8 +87,8 @@ pub enum Why {
     Vanished,
     /// More went than a layer below its contact facets: collapses took a piece of it away.
     Lost,
-    /// Carved, it crosses itself once its corners are rounded for a file.
-    Crosses,
+    /// It can not be carved, as it is no solid.
+    NotSolid,
     /// It stays nearer to another part than the fit.
     TooNear,
 }
@@ -183,21 +183,21 @@ fn moved(shape: &Shape, contact: &[bool], aim: &Aim) -> Start {
 fn of_jumping(shape: &Shape, contact: &[bool], aim: &Aim, body: &Body) -> Option<Failure> {
     let far = body::LONGEST_RUN * aim.depth;
     let at = live(body).find(|c| c.at.distance(c.anchor) > far)?.anchor;
-    let carved = carve::carve(shape, contact, aim.depth).ok()??;
+    let carved = carve::carve(shape, contact, aim.depth, aim.thinnest).ok()??;
     (carved.volume() > body.mesh().0.volume()).then_some(Failure { at, why: Why::Lost })
 }
 
 /// A carved part as a body: its triangles are faces that nothing moves but the parting from other bodies.
 fn carved(shape: &Shape, contact: &[bool], aim: &Aim) -> Start {
-    let carving = carve::carve(shape, contact, aim.depth);
+    let carving = carve::carve(shape, contact, aim.depth, aim.thinnest);
     let Ok(Some(mesh)) = carving else {
         let body = Body::new(shape, contact, 0.0);
         let failures = of_volume(&body, f64::INFINITY);
-        let why = if carving.is_ok() { Why::Vanished } else { Why::Crosses };
+        let why = if carving.is_ok() { Why::Vanished } else { Why::NotSolid };
         let failures = failures.into_iter().map(|f| Failure { why, ..f }).collect();
         return Start { body, settled: Settled::default(), deepest: 0.0, failures };
     };
-    let body = Body::new(&Shape::of(&mesh), &vec![false; mesh.triangles.len()], aim.depth);
+    let body = Body::new(&Shape::of(&mesh), &vec![false; mesh.triangles.len()], aim.depth).as_it_came();
     let deepest = deepest(&mesh, &shape.mesh());
     Start { body, settled: Settled::default(), deepest, failures: vec![] }
 }
@@ -268,8 +268,21 @@ fn finish(
         let carved = start.body.mesh().0.volume().min(before.volume());
         let least = carved - most_removed(before, &all, aim.depth);
         failures.extend([of_moving(&body), of_settling(&settled), of_volume(&body, least)].concat());
+        failures.extend(dragged(aim, &settled, &start.body.posed(&job.parts[p].pose), &body));
     }
     Offset::of(&body, start, collapses, same_as, failures)
+}
+
+/// A corner that collapses of the parting took along farther than a move along a flat ridge goes; of a carved part, whose
+/// slivers have planes of no meaning, any corner that went so far.
+fn dragged(aim: &Aim, settled: &Settled, before: &Body, after: &Body) -> Option<Failure> {
+    let went = |(a, b): &(&body::Corner, &body::Corner)| {
+        (settled.collapses > 0 || aim.by == By::Carving)
+            && a.at.distance(b.at) > body::LONGEST_RUN * aim.depth
+    };
+    let lives = after.corners.iter().zip(&after.star).map(|(c, s)| (c, !s.is_empty()));
+    let both = before.corners.iter().zip(lives).filter(|(_, (_, lives))| *lives).map(|(a, (b, _))| (a, b));
+    both.into_iter().find(went).map(|(a, _)| Failure { at: a.at, why: Why::Lost })
 }
 
 impl Offset {
