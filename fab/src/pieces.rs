@@ -54,6 +54,7 @@ pub(crate) fn pieces(job: &Job, recipe: &Recipe, snap: f64, scales: Vec<Scale>) 
     for p in 0..best.len() {
         if let Some(piece) = last_resort(job, p, &best, &aims) {
             best[p] = piece;
+            alone(p, &mut best);
         }
     }
     best.par_iter_mut().zip(&job.parts).for_each(|(piece, part)| shave(recipe.process_of(&part.id), piece));
@@ -126,6 +127,12 @@ fn last_resort(job: &Job, p: usize, pieces: &[Piece], aims: &[Aim]) -> Option<Pi
         made.faults.truncate(made.offset.failures.len());
     }
     Some(made)
+}
+
+/// No other part is the same solid as one that was made anew.
+fn alone(p: usize, pieces: &mut [Piece]) {
+    let same = |(_, other): &(usize, &mut Piece)| other.offset.same_as == p;
+    pieces.iter_mut().enumerate().filter(same).for_each(|(q, other)| other.offset.same_as = q);
 }
 
 /// What a part is to keep off: its own contact faces, and the others near it as they are made. Those that are not made yet

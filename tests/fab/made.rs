@@ -168,3 +168,19 @@ fn what_vanishes_is_told_as_that() {
     let told = report.findings.iter().filter(|f| f.what.contains("leaves nothing of this part"));
     assert_eq!(told.count(), report.parts.len(), "{:#?}", report.findings);
 }
+
+/// An edge of four faces is no fault of the input where a clearance parts them.
+#[test]
+fn a_part_that_touches_itself_in_an_edge_is_parted_there() {
+    for clearance in [0.05, 0.2, 0.8] {
+        let report = made(&solids::ring_on_an_edge(), &recipe(clearance));
+        assert_ne!(report.worst(), Some(Severity::Error), "{clearance}: {:#?}", report.findings);
+        assert!(report.gaps.len() == 3 && worst_gap(&report) >= 1.0, "{:#?}", report.gaps);
+        // It stays a ring: one handle.
+        assert_eq!(report.parts[0].read_back.genus, Some(1));
+        for p in &report.parts {
+            let ratio = p.removed_mm3 / p.clearance_volume_mm3;
+            assert!((0.8..1.1).contains(&ratio), "{} at {clearance}: {ratio}", p.id);
+        }
+    }
+}

@@ -1,8 +1,8 @@
 //! Takes a shape, its contact facets and a depth; gives the shape less a slab around each plane of them.
 //!
 //! The fallback where the exact move fails. Sound: whatever is nearer to a contact facet than the depth is gone. Not exact:
-//! beside edges it takes up to 1.42 times the depth, at corners of faces along the axes 1.74, the diagonals of a square and
-//! a cube, as planes moved exactly would. Not promised: that bodies which meet in an edge or a corner alone keep the fit
+//! beside edges it takes up to 1.42 times the depth, at corners 1.48, of faces along the axes 1.74: the diagonals of a
+//! square, an octagon's prism and a cube. Not promised: that bodies which meet in an edge or a corner alone keep the fit
 //! (the caller parts them), nor that what is left is one body.
 //!
 //! What f32 can not hold apart must not arise, so facets of one plane make one slab, in one frame with one floor and one
