@@ -175,7 +175,8 @@ fn a_part_that_touches_itself_in_an_edge_is_parted_there() {
     for clearance in [0.05, 0.2, 0.8] {
         let report = made(&solids::ring_on_an_edge(), &recipe(clearance));
         assert_ne!(report.worst(), Some(Severity::Error), "{clearance}: {:#?}", report.findings);
-        assert!(report.gaps.len() == 3 && worst_gap(&report) >= 1.0, "{:#?}", report.gaps);
+        // The bars meet in the edge alone, and both their corners there go back: farther than the fit, so no gap is listed.
+        assert!(report.gaps.len() == 2 && worst_gap(&report) >= 1.0, "{:#?}", report.gaps);
         // It stays a ring: one handle.
         assert_eq!(report.parts[0].read_back.genus, Some(1));
         for p in &report.parts {
