@@ -33,12 +33,29 @@ pub fn of_failure(id: &str, failure: &Failure) -> Finding {
         Why::TurnedOver => "the clearance turns a triangle over that no collapse could mend",
         Why::Vanished => "the clearance leaves nothing of this part",
         Why::Lost => "moving the faces would take away more of this part than a layer below them",
+        Why::NotSolid => "moving its faces fails, and it can not be carved: what came in is no closed solid",
+        Why::TooNear => "the part stays nearer to another than the clearance of both",
     };
     error(id, vec![failure.at], format!("{what}; nothing is written for the part"), SMALLER)
 }
 
-/// That a part was carved, and what the exact move failed of.
-pub fn of_carving(id: &str, failed: &[Finding]) -> Finding {
+/// That a part was carved, what the exact move failed of, and how far below its surface the new one lies at most, mm.
+pub fn of_carving(id: &str, failed: &[Finding], deepest: f64) -> Finding {
+    let how = format!(
+        "it was carved by slabs instead, which go at most {deepest:.3} mm deep, at edges and corners"
+    );
+    instead(id, failed, &how)
+}
+
+/// The same for a part that was eroded on a lattice of that step, mm.
+pub fn of_lattice(id: &str, failed: &[Finding], step: f64, deepest: f64) -> Finding {
+    let how = format!(
+        "it was eroded on a lattice of {step} mm instead: its faces, those that touch nothing too, are rough by as much, and lie at most {deepest:.3} mm deep"
+    );
+    Finding { severity: Severity::Warning, ..instead(id, failed, &how) }
+}
+
+fn instead(id: &str, failed: &[Finding], how: &str) -> Finding {
     let why = failed.first().map_or(String::new(), |f| format!(" ({})", f.what));
     let place = Place {
         parts: vec![id.to_string()],
@@ -47,9 +64,7 @@ pub fn of_carving(id: &str, failed: &[Finding]) -> Finding {
     Finding {
         severity: Severity::Note,
         place,
-        what: format!(
-            "moving its faces exactly failed{why}; it was carved by blocks instead, and has more air at edges and corners"
-        ),
+        what: format!("moving its faces exactly failed{why}; {how}"),
         remedy: "nothing, where the gaps that were measured do; else a smaller clearance".into(),
     }
 }

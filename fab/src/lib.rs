@@ -25,6 +25,7 @@ pub mod mold;
 pub mod near;
 pub mod offset;
 pub mod package;
+mod pieces;
 pub mod pinch;
 mod print_face;
 pub mod process;

@@ -9,20 +9,19 @@ use crate::check::Programs;
 use crate::congruent;
 use crate::cross;
 use crate::external;
-use crate::files::{Batch, FileError, obj, stems, stl};
+use crate::files::{Batch, FileError, obj, stl};
 use crate::findings;
 use crate::gap::{self, Gap, Made, Promise, Verdict};
 use crate::ledger::Scale;
 use crate::mesh::Mesh;
 use crate::mold::fins::{self, Fins};
-use crate::offset::{self, Aim, Offset};
+use crate::offset::Offset;
 use crate::package::laying::Laying;
+use crate::pieces::pieces;
 use crate::pinch;
-use crate::print_face;
 use crate::process::Process;
 use crate::report::{Finding, PartReport, ReadBack, Report, RouteReport};
 use crate::shape::{Fault, Job, Role};
-use crate::shave::Shaving;
 use crate::wall;
 use glam::DVec3;
 use rayon::prelude::*;
@@ -126,13 +125,9 @@ pub enum FabError {
     Figures(String),
 }
 
-/// The least altitude of a triangle, in snap distances: snapping moves three corners by one each, so that 4 can not turn
-/// a triangle over.
-const THINNEST_IN_SNAPS: f64 = 4.0;
-
 /// How much deeper than promised faces go, in snap distances: one for the snap itself, one so that `relief` has
 /// something to stop at.
-const MARGIN_IN_SNAPS: f64 = 2.0;
+pub(crate) const MARGIN_IN_SNAPS: f64 = 2.0;
 
 /// How often a pair's distance can be off by one snap distance: the margins of both faces and their snaps.
 const PAIR_IN_SNAPS: f64 = 2.0 * (MARGIN_IN_SNAPS + 1.0);
@@ -208,86 +203,6 @@ fn snap_finished(job: &Job, scales: &[Scale]) -> f64 {
         stl::snap_distance(largest.fold(0.0, f64::max)) / scale.factor
     };
     job.parts.iter().zip(scales).map(of_part).fold(0.0, f64::max)
-}
-
-fn aim(clearance: f64, snap: f64) -> Aim {
-    let depth = clearance + MARGIN_IN_SNAPS * snap;
-    Aim { depth, share: clearance + snap, thinnest: THINNEST_IN_SNAPS * snap, weld: depth * offset::REACH }
-}
-
-fn pieces(job: &Job, recipe: &Recipe, snap: f64, scales: Vec<Scale>) -> Vec<Piece> {
-    let stems = stems(&job.parts.iter().map(|p| p.id.clone()).collect::<Vec<_>>());
-    let clearance = |p: &crate::shape::PlacedPart| recipe.process_of(&p.id).clearance.value;
-    let mut aims: Vec<Aim> = job.parts.iter().map(|p| aim(clearance(p), snap)).collect();
-    let attempt = |aims: &[Aim]| -> Vec<Piece> {
-        let all: Vec<_> = job.parts.iter().zip(&stems).zip(offset::offset(job, aims)).zip(&scales).collect();
-        all.into_par_iter()
-            .map(|(((part, stem), offset), scale)| piece(&part.id, stem.clone(), offset, scale.clone()))
-            .collect()
-    };
-    let mut best = attempt(&aims);
-    for _ in 0..COARSER.1 {
-        if best.iter().all(|p| p.faults.is_empty()) {
-            break;
-        }
-        for (aim, piece) in aims.iter_mut().zip(&best) {
-            aim.weld *= if piece.faults.is_empty() { 1.0 } else { COARSER.0 };
-        }
-        let again = attempt(&aims);
-        if faulty(&again) < faulty(&best) {
-            best = again;
-        }
-    }
-    let carved: Vec<bool> =
-        best.par_iter_mut().enumerate().map(|(p, piece)| carve(job, p, aims[p].depth, piece)).collect();
-    let roots: Vec<usize> = best.iter().map(|p| p.offset.same_as).collect();
-    let shavings: Vec<Option<Shaving>> =
-        job.parts.iter().map(|p| print_face::shaving(recipe.process_of(&p.id))).collect();
-    for (p, piece) in best.iter_mut().enumerate() {
-        // Alike only with those that the same is done to.
-        let done = |q: usize| (roots[q], carved[q], shavings[q]);
-        piece.offset.same_as = (0..p).find(|&q| done(q) == done(p)).unwrap_or(p);
-    }
-    print_face::shave(job, &shavings, &mut best);
-    best
-}
-
-/// The fallback: the part less a block around each contact facet, where no move was found; whether it was taken.
-fn carve(job: &Job, p: usize, depth: f64, failed: &mut Piece) -> bool {
-    if failed.faults.is_empty() {
-        return false;
-    }
-    let part = &job.parts[p];
-    let contact: Vec<bool> = part.roles.iter().map(|r| *r != Role::Outer).collect();
-    let Ok(Some(mesh)) = offset::carve::carve(&job.shapes[part.shape], &contact, depth) else { return false };
-    let mesh = mesh.map(|v| part.pose.transform_point3(v));
-    let same_as = failed.offset.same_as;
-    let offset = Offset { mesh, collapses: 0, longest_move: depth * CORNER, same_as, failures: vec![] };
-    let mut carved = piece(&failed.id, failed.stem.clone(), offset, failed.scale.clone());
-    let sound = carved.faults.is_empty();
-    if sound {
-        carved.notes.push(findings::of_carving(&failed.id, &failed.faults));
-        *failed = carved;
-    }
-    sound
-}
-
-/// How far carving goes at a corner, in depths: along the diagonal of a square.
-const CORNER: f64 = std::f64::consts::SQRT_2;
-
-/// Where the exact move fails, edges so many times longer are united first, and so many times: 0.02, 0.08, 0.32 and 1.28
-/// of the depth. What a weld costs in clearance `relief` mends, and the gap is measured all the same.
-const COARSER: (f64, usize) = (4.0, 3);
-
-fn faulty(pieces: &[Piece]) -> usize {
-    pieces.iter().filter(|p| !p.faults.is_empty()).count()
-}
-
-fn piece(id: &str, stem: String, offset: Offset, scale: Scale) -> Piece {
-    let master = stl::snapped(&offset.mesh.map(|v| scale.up(v)));
-    let mut faults: Vec<Finding> = offset.failures.iter().map(|f| findings::of_failure(id, f)).collect();
-    faults.extend(findings::of_mesh(id, &master, &scale));
-    Piece { id: id.to_string(), stem, scale, offset, laid: None, master, made: None, faults, notes: vec![] }
 }
 
 /// Gaps of what was read back; a piece that comes too near to another is not to be written.

@@ -1,7 +1,7 @@
 //! Takes a shape of which more than two facets meet in an edge, as where two cubes touch along one; gives it with such
 //! edges parted, so that each is between two facets of one wedge of material.
 //!
-//! The points stay where they are: only their numbers are doubled. Shapes without such edges come back as they are. Not
+//! The points stay where they are: their numbers are doubled, and where that does not do an edge is halved. Shapes without such edges come back as they are. Not
 //! promised: that what is parted can be made; a body that hangs together by an edge alone is told once its file is tried.
 
 use crate::shape::{Facet, Shape};
@@ -30,7 +30,26 @@ pub fn parted(shape: &Shape) -> Shape {
             unite(&mut root, number(next(p)), number(q));
         }
     }
-    numbered(shape, &first, &mut root)
+    halved(numbered(shape, &first, &mut root))
+}
+
+/// Edges that are still between more than two facets, as where the wedges of an edge hang together around both of its ends:
+/// all wedges but one get a corner of their own half way, so that no two share an edge by number.
+fn halved(mut shape: Shape) -> Shape {
+    let uses = uses(&shape);
+    let mut corners: Vec<(usize, usize, u32)> = Vec::new();
+    for (&(a, b), ours) in uses.iter().filter(|((a, b), u)| a < b && u.len() > 1) {
+        let Some(theirs) = uses.get(&(b, a)).filter(|t| t.len() == ours.len()) else { continue };
+        for (p, q) in wedges(&shape, (a, b), ours, theirs).into_iter().skip(1) {
+            let middle = shape.vertices.len() as u32;
+            shape.vertices.push((shape.vertices[a as usize] + shape.vertices[b as usize]) / 2.0);
+            corners.extend([p, q].map(|(f, k)| (f, k + 1, middle)));
+        }
+    }
+    // From behind, so that places before it stay.
+    corners.sort_unstable_by(|x, y| y.cmp(x));
+    corners.into_iter().for_each(|(f, k, v)| shape.facets[f].corners.insert(k, v));
+    shape
 }
 
 fn uses(shape: &Shape) -> Uses {
@@ -138,6 +157,47 @@ mod tests {
         let lower: Vec<u32> = parted.facets[..6].iter().flat_map(|f| f.corners.clone()).collect();
         assert!(parted.facets[6..].iter().flat_map(|f| &f.corners).all(|c| !lower.contains(c)));
         assert_eq!(parted.volume(), 2.0);
+    }
+
+    /// Cells of a cube of 3 in a ring, of which the first and the last touch in an edge: both ends of the edge are inside the
+    /// ring's matter, so doubled numbers alone do not part it.
+    fn ring_on_an_edge() -> Shape {
+        let cells: Vec<[i32; 3]> =
+            vec![[0, 0, 1], [1, 1, 1], [0, 0, 0], [0, 1, 0], [1, 1, 0], [0, 0, 2], [1, 0, 2], [1, 1, 2]];
+        let quads = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+        let ways = [[0, 0, -1], [0, 0, 1], [0, -1, 0], [0, 1, 0], [-1, 0, 0], [1, 0, 0]];
+        let mut shape = Shape::default();
+        for c in &cells {
+            for (q, w) in quads.iter().zip(ways) {
+                if cells.contains(&[c[0] + w[0], c[1] + w[1], c[2] + w[2]]) {
+                    continue;
+                }
+                let corner = |k: &usize| {
+                    let bit = |a: usize| f64::from(c[a] + (*k as i32 >> a & 1));
+                    DVec3::new(bit(0), bit(1), bit(2))
+                };
+                let number = |p: DVec3| {
+                    shape.vertices.iter().position(|v| *v == p).unwrap_or_else(|| {
+                        shape.vertices.push(p);
+                        shape.vertices.len() - 1
+                    }) as u32
+                };
+                let corners = q.iter().map(corner).map(number).collect();
+                shape.facets.push(Facet { corners, normal: DVec3::from_array(w.map(f64::from)) });
+            }
+        }
+        shape
+    }
+
+    #[test]
+    fn an_edge_whose_wedges_hang_together_at_both_ends_is_halved() {
+        let shape = ring_on_an_edge();
+        assert!(uses(&shape).values().any(|u| u.len() > 1));
+        let parted = parted(&shape);
+        let uses = uses(&parted);
+        assert!(uses.iter().all(|((a, b), u)| u.len() == 1 && uses.contains_key(&(*b, *a))));
+        assert!((parted.volume() - 8.0).abs() < 1e-12, "{}", parted.volume());
+        assert!(crate::solid::Solid::of(&parted.mesh()).is_ok());
     }
 
     #[test]

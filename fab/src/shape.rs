@@ -3,6 +3,7 @@
 //! Not promised: that neighbours really touch, or that a solid does not cross itself (the made one is tested for it).
 
 use crate::ears::triangulate;
+use crate::mesh::Mesh;
 use glam::{DAffine3, DVec3};
 use std::collections::BTreeMap;
 use std::fmt;
@@ -82,6 +83,22 @@ fn within_reach(v: DVec3) -> bool {
 }
 
 impl Shape {
+    /// A closed mesh, each triangle a facet. One without area has a normal of no meaning.
+    pub fn of(mesh: &Mesh) -> Shape {
+        let facet = |t: usize| {
+            let [a, b, c] = mesh.corners(t);
+            let normal = (b - a).cross(c - a).try_normalize().unwrap_or(DVec3::Z);
+            Facet { corners: mesh.triangles[t].to_vec(), normal }
+        };
+        Shape { vertices: mesh.vertices.clone(), facets: (0..mesh.triangles.len()).map(facet).collect() }
+    }
+
+    /// Its facets as triangles.
+    pub fn mesh(&self) -> Mesh {
+        let triangles = self.facets.iter().flat_map(|f| triangulate(&self.vertices, f)).collect();
+        Mesh { vertices: self.vertices.clone(), triangles }
+    }
+
     /// Largest extent of the bounding box, in mm.
     pub fn size(&self) -> f64 {
         let (lo, hi) = self.bounds();

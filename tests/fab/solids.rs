@@ -261,3 +261,13 @@ pub fn two_boxes_of_one_shape() -> Job {
     job.shapes.truncate(1);
     job
 }
+
+/// A ring of cubes that touches itself in one edge, both ends of which are inside its matter, and the two bars that it holds.
+pub fn ring_on_an_edge() -> Job {
+    let owner = |x: usize, y: usize, z: usize| match [x, y, z] {
+        [1, 0, 0] | [1, 0, 1] => 1,
+        [0, 1, 1] | [0, 1, 2] => 2,
+        _ => 0,
+    };
+    Complex::voxels([2, 2, 3], 8.0, |x, y, z| Some(owner(x, y, z))).job("ring-on-an-edge")
+}

@@ -46,7 +46,7 @@ pub struct Body {
 
 /// Along a flat ridge between a kept and a moved facet a corner would run away sideways; beyond this many clearances
 /// the kept facet is let dip instead. 4 is a ridge within 14.5 degrees of flat (1 / sin).
-const LONGEST_RUN: f64 = 4.0;
+pub(super) const LONGEST_RUN: f64 = 4.0;
 
 /// Kept facets whose normals differ by less than this (radians) are one plane: above the round-off of the normals,
 /// and a tilt that raises a 100 mm facet by less than a ten-thousandth of a millimetre.
@@ -88,6 +88,16 @@ impl Body {
             (corner.at, corner.placed) = (place.unwrap_or(corner.anchor), place.is_some());
         }
         body
+    }
+
+    /// Every corner back where it came from, bound only by the planes that pass there: a sliver's normal is round-off, and its
+    /// plane may pass millimetres below its own corners.
+    pub fn as_it_came(mut self) -> Body {
+        for c in &mut self.corners {
+            (c.at, c.placed) = (c.anchor, true);
+            c.facets.retain(|&f| self.moved[f as usize].plane.excess(c.anchor) <= self.slack);
+        }
+        self
     }
 
     /// The point nearest to `anchor` under the moved planes of `facets`. Kept facets stay planes where they leave room.

@@ -4,7 +4,7 @@
 //! kept one. First order: where facets bend by an angle t it lies up to about depth * t * t / 2 deeper. Not complete:
 //! shapes exist that it can not offset; it then says where, and the caller writes nothing.
 //!
-//! Where the whole of it fails, `carve` is the fallback of the caller.
+//! Where the whole of it fails for a part, the caller asks for it carved: `carve`.
 //!
 //! The steps: `body` moves corners, `weld` takes out edges too short to matter, `split` parts corners that have no one
 //! place, `settle` collapses what turned over, `relief` parts bodies that are still nearer than the fit.
@@ -17,6 +17,7 @@
 
 pub mod body;
 pub mod carve;
+pub mod lattice;
 pub mod least;
 pub mod relief;
 pub mod settle;
@@ -24,10 +25,12 @@ pub mod split;
 pub mod weld;
 
 use crate::mesh::Mesh;
+use crate::near::on_triangle;
 use crate::shape::{Job, Role, Shape};
 use body::Body;
 use glam::{DAffine3, DVec3};
 use rayon::prelude::*;
+use relief::{Relief, Standing};
 use settle::Settled;
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -43,6 +46,16 @@ pub struct Aim {
     pub thinnest: f64,
     /// Edges shorter than this are united before the move.
     pub weld: f64,
+    pub by: By,
+}
+
+/// How contact facets go inward.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum By {
+    /// Their planes are moved.
+    Moving,
+    /// A block around each is cut off.
+    Carving,
 }
 
 /// A part with its contact facets moved inward, in place.
@@ -74,62 +87,151 @@ pub enum Why {
     Vanished,
     /// More went than a layer below its contact facets: collapses took a piece of it away.
     Lost,
+    /// It can not be carved, as it is no solid.
+    NotSolid,
+    /// It stays nearer to another part than the fit.
+    TooNear,
 }
 
 /// Edges shorter than this part of the depth are united before the move: for 0.2 mm that is 4 micrometres, a tenth of
 /// the finest step that the printers at hand can make. What it costs in clearance, `relief` finds and mends.
 pub const REACH: f64 = 0.02;
 
+/// The start of a part: what has the same shape, contact facets and aim has the same.
+type Key = (usize, Vec<bool>, [u64; 2], By);
+
+/// A part with its own faces moved, in the frame of its shape, before any other part is looked at.
+#[derive(Clone, Debug)]
+struct Start {
+    body: Body,
+    settled: Settled,
+    /// How far below the shape's surface its corners are, where none of them is a corner of the shape, mm.
+    deepest: f64,
+    failures: Vec<Failure>,
+}
+
+/// Starts that were made already, for the next attempt on the same job.
+#[derive(Debug, Default)]
+pub struct Known(BTreeMap<Key, Start>);
+
 /// Moves the contact facets of every part inward and parts the bodies to their fits. Parts with the same shape, contact
 /// facets and aim are moved once, and stay the same solid: what one of them has to give way by, all of them do, so that any
-/// of them fits in the place of any other. Where that fails, each of them is parted alone.
-pub fn offset(job: &Job, aims: &[Aim]) -> Vec<Offset> {
-    let key = |p: usize| {
-        let contact: Vec<bool> = job.parts[p].roles.iter().map(|r| *r != Role::Outer).collect();
-        (job.parts[p].shape, contact, [aims[p].depth, aims[p].weld].map(f64::to_bits))
-    };
-    let mut first: BTreeMap<_, usize> = BTreeMap::new();
-    let kinds: Vec<usize> = (0..job.parts.len()).map(|p| *first.entry(key(p)).or_insert(p)).collect();
-    let moved: BTreeMap<usize, (Body, Settled)> =
-        first.par_iter().map(|((s, c, _), &p)| (p, moved_body(job, *s, c, &aims[p]))).collect();
-    let (together, relieved) = parted((job, aims), &moved, &kinds, &kinds);
+/// of them fits in the place of any other. Where that fails, each of them is parted alone. A part whose own move failed takes
+/// no part in the parting: its wrong faces would push others back.
+pub fn offset(job: &Job, aims: &[Aim], known: &mut Known) -> Vec<Offset> {
+    let keys: Vec<Key> = (0..aims.len()).map(|p| key(job, p, &aims[p])).collect();
+    let mut first: BTreeMap<&Key, usize> = BTreeMap::new();
+    let kinds: Vec<usize> = keys.iter().enumerate().map(|(p, k)| *first.entry(k).or_insert(p)).collect();
+    let new: Vec<(&Key, usize)> = first.into_iter().filter(|(k, _)| !known.0.contains_key(*k)).collect();
+    let made: Vec<(Key, Start)> =
+        new.into_par_iter().map(|(k, p)| (k.clone(), start(job, k, &aims[p]))).collect();
+    known.0.extend(made);
+    let starts: Vec<&Start> = keys.iter().map(|k| &known.0[k]).collect();
+    let (together, relieved) = parted((job, aims), &starts, &kinds, &kinds);
     let spoilt = |p: &usize| relieved.contains(&kinds[*p]) && !together[*p].failures.is_empty();
     let failed: BTreeSet<usize> = (0..kinds.len()).filter(spoilt).map(|p| kinds[p]).collect();
     let alone = |p: usize| if failed.contains(&kinds[p]) { p } else { kinds[p] };
     let groups: Vec<usize> = (0..kinds.len()).map(alone).collect();
-    if groups == kinds { together } else { parted((job, aims), &moved, &kinds, &groups).0 }
+    if groups == kinds { together } else { parted((job, aims), &starts, &kinds, &groups).0 }
 }
 
-/// The moved bodies parted to their fits, parts of a group, named by its first, as one; and the groups that had to give way.
+/// The sound bodies parted to their fits, parts of a group, named by its first, as one; and the groups that had to give way.
 fn parted(
     (job, aims): (&Job, &[Aim]),
-    moved: &BTreeMap<usize, (Body, Settled)>,
+    starts: &[&Start],
     kinds: &[usize],
     groups: &[usize],
 ) -> (Vec<Offset>, BTreeSet<usize>) {
-    let mut bodies: BTreeMap<usize, Body> = groups.iter().map(|&g| (g, moved[&kinds[g]].0.clone())).collect();
-    let poses: Vec<DAffine3> = job.parts.iter().map(|p| p.pose).collect();
-    let relieved = relief::relieve(&mut bodies, groups, &poses, aims);
+    let sound: Vec<usize> = (0..aims.len()).filter(|&p| starts[p].failures.is_empty()).collect();
+    let mut bodies: BTreeMap<usize, Body> =
+        sound.iter().map(|&p| (groups[p], starts[p].body.clone())).collect();
+    let standing: Vec<Standing> =
+        sound.iter().map(|&p| Standing { group: groups[p], pose: job.parts[p].pose, aim: aims[p] }).collect();
+    let relief = relief::relieve(&mut bodies, &standing);
+    let relieved: BTreeSet<usize> =
+        relief.iter().filter(|(_, r)| r.settled.is_some()).map(|(g, _)| *g).collect();
     let result = |p: usize| {
-        let (part, group) = (&job.parts[p], groups[p]);
-        let shape = &job.shapes[part.shape];
-        let least = shape.volume() - most_removed(shape, &part.roles, aims[p].depth);
+        let group = groups[p];
         // A group of one that nothing was done to is what its kind is, where nothing was done to that.
-        let touched = [group, kinds[p]].iter().any(|g| relieved.contains_key(g));
+        let touched = [group, kinds[p]].iter().any(|g| relieved.contains(g));
         let same_as = if touched { group } else { kinds[p] };
-        let body = bodies[&group].posed(&part.pose);
-        finish(&body, &moved[&kinds[p]].1, relieved.get(&group), (same_as, least))
+        match (bodies.get(&group), relief.get(&group)) {
+            (Some(body), Some(relief)) if starts[p].failures.is_empty() => {
+                finish(job, (p, &aims[p]), (starts[p], body, relief), same_as)
+            }
+            _ => {
+                let pose = &job.parts[p].pose;
+                let failures = posed(starts[p].failures.clone(), pose);
+                let collapses = starts[p].settled.collapses;
+                Offset::of(&starts[p].body.posed(pose), starts[p], collapses, same_as, failures)
+            }
+        }
     };
-    let offsets = (0..job.parts.len()).into_par_iter().map(result).collect();
-    (offsets, relieved.keys().copied().collect())
+    ((0..job.parts.len()).into_par_iter().map(result).collect(), relieved)
 }
 
-fn moved_body(job: &Job, shape: usize, contact: &[bool], aim: &Aim) -> (Body, Settled) {
-    let mut body = Body::new(&job.shapes[shape], contact, aim.depth);
+/// Failures of a body, where it stands.
+fn posed(failures: Vec<Failure>, pose: &DAffine3) -> Vec<Failure> {
+    failures.into_iter().map(|f| Failure { at: pose.transform_point3(f.at), ..f }).collect()
+}
+
+fn key(job: &Job, p: usize, aim: &Aim) -> Key {
+    let contact: Vec<bool> = job.parts[p].roles.iter().map(|r| *r != Role::Outer).collect();
+    (job.parts[p].shape, contact, [aim.depth, aim.weld].map(f64::to_bits), aim.by)
+}
+
+fn start(job: &Job, (shape, contact, _, by): &Key, aim: &Aim) -> Start {
+    let shape = &job.shapes[*shape];
+    match by {
+        By::Moving => moved(shape, contact, aim),
+        By::Carving => carved(shape, contact, aim),
+    }
+}
+
+fn moved(shape: &Shape, contact: &[bool], aim: &Aim) -> Start {
+    let mut body = Body::new(shape, contact, aim.depth);
     weld::weld(&mut body, aim.weld);
     split::split(&mut body);
     let settled = settle::settle(&mut body, aim.thinnest);
-    (body, settled)
+    let least = shape.volume() - most_removed(shape, contact, aim.depth);
+    let mut failures = [of_moving(&body), of_settling(&settled), of_volume(&body, least)].concat();
+    if failures.is_empty() && settled.collapses > 0 {
+        failures.extend(of_jumping(shape, contact, aim, &body));
+    }
+    Start { body, settled, deepest: 0.0, failures }
+}
+
+/// A collapse can take a corner along that was no part of the fault. Where one went farther than a move along a flat ridge
+/// does, carving is the measure: if it leaves more, the move has lost a piece.
+fn of_jumping(shape: &Shape, contact: &[bool], aim: &Aim, body: &Body) -> Option<Failure> {
+    let far = body::LONGEST_RUN * aim.depth;
+    let at = live(body).find(|c| c.at.distance(c.anchor) > far)?.anchor;
+    let carved = carve::carve(shape, contact, aim.depth, aim.thinnest).ok()??;
+    (carved.volume() > body.mesh().0.volume()).then_some(Failure { at, why: Why::Lost })
+}
+
+/// A carved part as a body: its triangles are faces that nothing moves but the parting from other bodies.
+fn carved(shape: &Shape, contact: &[bool], aim: &Aim) -> Start {
+    let carving = carve::carve(shape, contact, aim.depth, aim.thinnest);
+    let Ok(Some(mesh)) = carving else {
+        let body = Body::new(shape, contact, 0.0);
+        let failures = of_volume(&body, f64::INFINITY);
+        let why = if carving.is_ok() { Why::Vanished } else { Why::NotSolid };
+        let failures = failures.into_iter().map(|f| Failure { why, ..f }).collect();
+        return Start { body, settled: Settled::default(), deepest: 0.0, failures };
+    };
+    let body = Body::new(&Shape::of(&mesh), &vec![false; mesh.triangles.len()], aim.depth).as_it_came();
+    let deepest = deepest(&mesh, &shape.mesh());
+    Start { body, settled: Settled::default(), deepest, failures: vec![] }
+}
+
+/// The farthest that a corner of the mesh is from the part's surface, mm.
+pub fn deepest(mesh: &Mesh, part: &Mesh) -> f64 {
+    let below = |v: &DVec3| {
+        let near = |t: usize| v.distance(on_triangle(*v, part.corners(t)));
+        (0..part.triangles.len()).map(near).fold(f64::INFINITY, f64::min)
+    };
+    mesh.vertices.par_iter().map(below).reduce(|| 0.0, f64::max)
 }
 
 /// Between two moved facets the air has 60 degrees or more; where it has less, what is left is carved. The tangent of half
@@ -138,8 +240,8 @@ const SHARPEST: f64 = 1.732_050_807_568_877_2;
 
 /// What a move may take, at most, in mm3: the prisms below the contact facets; beside edges, between two of them the kite in
 /// the matter, else a half disc, since bodies may be parted there; and at corners a cube of two depths, shared by three facets.
-fn most_removed(shape: &Shape, roles: &[Role], depth: f64) -> f64 {
-    let contact = |f: usize| roles[f] != Role::Outer;
+fn most_removed(shape: &Shape, contact: &[bool], depth: f64) -> f64 {
+    let contact = |f: usize| contact[f];
     let below = |f: usize| shape.facet_area(f) * depth + corners_of(shape, f) / 3.0 * (2.0 * depth).powi(3);
     let prisms: f64 = (0..shape.facets.len()).filter(|&f| contact(f)).map(below).sum();
     let beside = |(f, g, along): (usize, usize, DVec3)| {
@@ -173,28 +275,70 @@ fn edges(shape: &Shape) -> Vec<(usize, usize, DVec3)> {
     all.iter().filter_map(both).collect()
 }
 
-/// `same_as` and the least volume that may be left.
+/// A part that took part in the parting, its body in the frame of its shape. Where it was pushed back, all its faces may dip
+/// by a depth.
 fn finish(
-    body: &Body,
-    settled: &Settled,
-    relieved: Option<&Settled>,
-    (same_as, least): (usize, f64),
+    job: &Job,
+    (p, aim): (usize, &Aim),
+    (start, body, relief): (&Start, &Body, &Relief),
+    same_as: usize,
 ) -> Offset {
-    let last = relieved.unwrap_or(settled);
-    let live: Vec<&body::Corner> =
-        body.corners.iter().zip(&body.star).filter(|(_, s)| !s.is_empty()).map(|(c, _)| c).collect();
-    let no_room = live.iter().filter(|c| !c.placed).map(|c| Failure { at: c.anchor, why: Why::NoRoom });
-    let turned = last.unsettled.iter().map(|&at| Failure { at, why: Why::TurnedOver });
-    let mut failures: Vec<Failure> = no_room.chain(turned).collect();
-    let (mesh, _) = body.mesh();
-    let left = mesh.volume();
-    if left <= 0.0 || left < least {
-        let at = live.iter().map(|c| c.anchor).sum::<DVec3>() / live.len().max(1) as f64;
-        failures.push(Failure { at, why: if left <= 0.0 { Why::Vanished } else { Why::Lost } });
+    let mut failures: Vec<Failure> =
+        relief.near.iter().map(|&at| Failure { at, why: Why::TooNear }).collect();
+    let collapses = start.settled.collapses + relief.settled.as_ref().map_or(0, |s| s.collapses);
+    let part = &job.parts[p];
+    if let Some(settled) = &relief.settled {
+        let before = &job.shapes[part.shape];
+        let all = vec![true; before.facets.len()];
+        let carved = start.body.mesh().0.volume().min(before.volume());
+        let least = carved - most_removed(before, &all, aim.depth);
+        failures.extend([of_moving(body), of_settling(settled), of_volume(body, least)].concat());
+        failures.extend(dragged(aim, settled, &start.body, body));
     }
-    let longest_move = live.iter().map(|c| c.at.distance(c.anchor)).fold(0.0, f64::max);
-    let collapses = settled.collapses + relieved.map_or(0, |r| r.collapses);
-    Offset { mesh, collapses, longest_move, same_as, failures }
+    Offset::of(&body.posed(&part.pose), start, collapses, same_as, posed(failures, &part.pose))
+}
+
+/// A corner that collapses of the parting took along farther than a move along a flat ridge goes; of a carved part, whose
+/// slivers have planes of no meaning, any corner that went so far.
+fn dragged(aim: &Aim, settled: &Settled, before: &Body, after: &Body) -> Option<Failure> {
+    let went = |(a, b): &(&body::Corner, &body::Corner)| {
+        (settled.collapses > 0 || aim.by == By::Carving)
+            && a.at.distance(b.at) > body::LONGEST_RUN * aim.depth
+    };
+    let lives = after.corners.iter().zip(&after.star).map(|(c, s)| (c, !s.is_empty()));
+    let both = before.corners.iter().zip(lives).filter(|(_, (_, lives))| *lives).map(|(a, (b, _))| (a, b));
+    both.into_iter().find(went).map(|(a, _)| Failure { at: a.at, why: Why::Lost })
+}
+
+impl Offset {
+    fn of(body: &Body, start: &Start, collapses: usize, same_as: usize, failures: Vec<Failure>) -> Offset {
+        let longest_move = live(body).map(|c| c.at.distance(c.anchor)).fold(start.deepest, f64::max);
+        Offset { mesh: body.mesh().0, collapses, longest_move, same_as, failures }
+    }
+}
+
+fn live(body: &Body) -> impl Iterator<Item = &body::Corner> {
+    body.corners.iter().zip(&body.star).filter(|(_, s)| !s.is_empty()).map(|(c, _)| c)
+}
+
+fn of_moving(body: &Body) -> Vec<Failure> {
+    live(body).filter(|c| !c.placed).map(|c| Failure { at: c.anchor, why: Why::NoRoom }).collect()
+}
+
+fn of_settling(settled: &Settled) -> Vec<Failure> {
+    settled.unsettled.iter().map(|&at| Failure { at, why: Why::TurnedOver }).collect()
+}
+
+/// Less than the least volume that may be left.
+fn of_volume(body: &Body, least: f64) -> Vec<Failure> {
+    let left = body.mesh().0.volume();
+    let why = match left {
+        v if v <= 0.0 => Why::Vanished,
+        v if v < least => Why::Lost,
+        _ => return vec![],
+    };
+    let (sum, count) = live(body).fold((DVec3::ZERO, 0.0_f64), |(s, n), c| (s + c.anchor, n + 1.0));
+    vec![Failure { at: sum / count.max(1.0), why }]
 }
 
 #[cfg(test)]
@@ -212,7 +356,7 @@ mod tests {
         let facets: Vec<Facet> = quads.iter().zip(normals).map(facet).collect();
         let cube = Shape { vertices: (0..8).map(corner).collect(), facets };
         let taken = 1000.0 - 9.8f64.powi(3);
-        let most = most_removed(&cube, &[Role::Contact { with: 1 }; 6], 0.1);
+        let most = most_removed(&cube, &[true; 6], 0.1);
         assert!(most >= taken && most < 1.1 * taken, "{most} {taken}");
         assert_eq!(edges(&cube).len(), 12);
     }

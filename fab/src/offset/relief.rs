@@ -2,8 +2,8 @@
 //!
 //! The move of `body` leaves the fit between facets that share a patch. It can not know of parts that meet only in an
 //! edge or a corner, of facets that come near one another across a narrow third, or of what a collapse dropped; here
-//! the distances themselves say so. Not complete: it stops after a fixed number of rounds, and the gap that is measured
-//! on the files decides whether it was enough.
+//! the distances themselves say so. Not complete: it stops after a fixed number of rounds and says where bodies are still
+//! nearer; the gap that is measured on the files decides.
 
 use super::Aim;
 use super::body::Body;
@@ -37,53 +37,70 @@ struct Surface {
     tree: Bvh,
 }
 
-/// Parts bodies that are nearer than the sum of their shares to the sum of their depths. Bodies are named by the first part
-/// of their group and lie in the frame of its shape; `groups` says whose body each part has, `poses` where it stands. What
-/// one part of a group has to give way by, its body gives way by, and so all of them. Gives what was done to bodies that
-/// were not left as they were.
-pub fn relieve(
-    bodies: &mut BTreeMap<usize, Body>,
-    groups: &[usize],
-    poses: &[DAffine3],
-    aims: &[Aim],
-) -> BTreeMap<usize, Settled> {
-    let mut done: BTreeMap<usize, Settled> = BTreeMap::new();
-    let parts = |of: &dyn Fn(usize) -> bool| (0..groups.len()).filter(|&p| of(p)).collect::<Vec<_>>();
-    let stands = |bodies: &BTreeMap<usize, Body>, p: usize| surface(&bodies[&groups[p]].posed(&poses[p]));
-    let mut surfaces: Vec<Surface> = parts(&|_| true).into_par_iter().map(|p| stands(bodies, p)).collect();
-    let mut changed = vec![true; groups.len()];
-    for _ in 0..ROUNDS {
-        let pushes = of_bodies(&all_pushes(&surfaces, &changed, aims), groups, poses);
+/// A part in its place; its body is that of its group.
+pub struct Standing {
+    pub group: usize,
+    pub pose: DAffine3,
+    pub aim: Aim,
+}
+
+/// What the parting did to a body.
+#[derive(Clone, Debug, Default)]
+pub struct Relief {
+    /// `None` where it was left as it was.
+    pub settled: Option<Settled>,
+    /// A corner of each triangle that is still nearer to another body than the shares, in the body's own frame.
+    pub near: Vec<DVec3>,
+}
+
+/// Parts bodies that are nearer than the sum of their shares to the sum of their depths. Each body, by its group, lies in
+/// the frame of its shape, and stands wherever a part of the group does: what one of them has to give way by, the body gives
+/// way by, and so all of them.
+pub fn relieve(bodies: &mut BTreeMap<usize, Body>, parts: &[Standing]) -> BTreeMap<usize, Relief> {
+    let mut done: BTreeMap<usize, Relief> = bodies.keys().map(|g| (*g, Relief::default())).collect();
+    let stands = |bodies: &BTreeMap<usize, Body>, p: &Standing| surface(&bodies[&p.group].posed(&p.pose));
+    let mut surfaces: Vec<Surface> = parts.par_iter().map(|p| stands(bodies, p)).collect();
+    let mut changed = vec![true; parts.len()];
+    for round in 0..=ROUNDS {
+        let pushes = of_bodies(&all_pushes(&surfaces, &changed, parts), parts);
         if pushes.is_empty() {
             break;
         }
-        changed = groups.iter().map(|g| pushes.contains_key(g)).collect();
-        let moved: Vec<(&usize, Settled)> = bodies
+        if round == ROUNDS {
+            for (g, pushes) in &pushes {
+                let near = pushes.keys().map(|&c| bodies[g].corners[c as usize].at).collect();
+                done.entry(*g).or_default().near = near;
+            }
+            break;
+        }
+        changed = parts.iter().map(|p| pushes.contains_key(&p.group)).collect();
+        let thinnest: BTreeMap<usize, f64> = parts.iter().map(|p| (p.group, p.aim.thinnest)).collect();
+        let moved: Vec<(usize, Settled)> = bodies
             .par_iter_mut()
-            .filter_map(|(g, b)| {
-                let before = done.get(g).cloned().unwrap_or_default();
-                Some((g, apply(b, pushes.get(g)?, aims[*g].thinnest, before)))
+            .filter_map(|(g, body)| {
+                let before = done[g].settled.clone().unwrap_or_default();
+                Some((*g, apply(body, pushes.get(g)?, thinnest[g], before)))
             })
             .collect();
-        done.extend(moved.into_iter().map(|(g, settled)| (*g, settled)));
-        let again = parts(&|p| changed[p]);
-        let moved: Vec<Surface> = again.par_iter().map(|&p| stands(bodies, p)).collect();
+        moved.into_iter().for_each(|(g, settled)| done.entry(g).or_default().settled = Some(settled));
+        let again: Vec<usize> = (0..parts.len()).filter(|&p| changed[p]).collect();
+        let moved: Vec<Surface> = again.par_iter().map(|&p| stands(bodies, &parts[p])).collect();
         again.into_iter().zip(moved).for_each(|(p, s)| surfaces[p] = s);
     }
     done
 }
 
 /// For each body, the farthest push of each corner among its parts, in its own frame.
-fn of_bodies(
-    pushes: &[BTreeMap<u32, Push>],
-    groups: &[usize],
-    poses: &[DAffine3],
-) -> BTreeMap<usize, BTreeMap<u32, Push>> {
+fn of_bodies(pushes: &[BTreeMap<u32, Push>], parts: &[Standing]) -> BTreeMap<usize, BTreeMap<u32, Push>> {
     let mut all: BTreeMap<usize, BTreeMap<u32, Push>> = BTreeMap::new();
-    for ((pushes, &group), pose) in pushes.iter().zip(groups).zip(poses) {
-        let back = pose.matrix3.transpose();
+    for (pushes, part) in pushes.iter().zip(parts) {
+        let back = part.pose.matrix3.transpose();
         for (&corner, push) in pushes {
-            keep(all.entry(group).or_default(), corner, Push { outward: back * push.outward, by: push.by });
+            keep(
+                all.entry(part.group).or_default(),
+                corner,
+                Push { outward: back * push.outward, by: push.by },
+            );
         }
     }
     all
@@ -105,9 +122,9 @@ fn apply(body: &mut Body, pushes: &BTreeMap<u32, Push>, thinnest: f64, before: S
 }
 
 /// For each body, the farthest push that each of its corners needs; pairs of which none has changed need none.
-fn all_pushes(surfaces: &[Surface], changed: &[bool], aims: &[Aim]) -> Vec<BTreeMap<u32, Push>> {
+fn all_pushes(surfaces: &[Surface], changed: &[bool], parts: &[Standing]) -> Vec<BTreeMap<u32, Push>> {
     let boxes: Vec<Aabb> = surfaces.iter().map(|s| Aabb::of(s.mesh.vertices.iter().copied())).collect();
-    let fit = |i: usize, j: usize| aims[i].share + aims[j].share;
+    let fit = |i: usize, j: usize| parts[i].aim.share + parts[j].aim.share;
     let near = |i: usize, j: usize| {
         (changed[i] || changed[j]) && boxes[i].distance_squared(&boxes[j]) < fit(i, j).powi(2)
     };
@@ -123,7 +140,7 @@ fn all_pushes(surfaces: &[Surface], changed: &[bool], aims: &[Aim]) -> Vec<BTree
     let mut pushes = vec![BTreeMap::new(); surfaces.len()];
     for (&(i, j), close) in pairs.iter().zip(&close) {
         for c in close {
-            let lack = (aims[i].depth + aims[j].depth - c.near.distance) / 2.0;
+            let lack = (parts[i].aim.depth + parts[j].aim.depth - c.near.distance) / 2.0;
             let Some(towards_b) = direction(&surfaces[i], &surfaces[j], c) else { continue };
             share(
                 &surfaces[i],

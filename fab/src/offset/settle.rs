@@ -8,7 +8,7 @@ use glam::DVec3;
 
 /// A triangle whose normal has turned from its facet's by more than this (cosine of 60 degrees) stands for that facet
 /// no longer. A turned-over one has a negative cosine.
-const LEAST_COSINE: f64 = 0.5;
+pub(super) const LEAST_COSINE: f64 = 0.5;
 
 /// What was done, and where it failed.
 #[derive(Clone, Debug, Default)]
@@ -90,7 +90,8 @@ fn upside_down(body: &Body, t: usize, thinnest: f64) -> bool {
     body.triangles[t].is_some_and(|tri| is_faulty(body.points(tri), normal, thinnest, 0.0))
 }
 
-fn is_faulty([a, b, c]: [DVec3; 3], normal: DVec3, thinnest: f64, least_cosine: f64) -> bool {
+/// Whether a triangle is thinner than that, or faces away from its facet.
+pub(super) fn is_faulty([a, b, c]: [DVec3; 3], normal: DVec3, thinnest: f64, least_cosine: f64) -> bool {
     let n = (b - a).cross(c - a);
     let longest = a.distance_squared(b).max(b.distance_squared(c)).max(c.distance_squared(a)).sqrt();
     let twice_area = n.length();

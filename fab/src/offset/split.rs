@@ -4,6 +4,7 @@
 //! several places, not one. Not complete: a corner for which no split helps stays unplaced, and is a finding.
 
 use super::body::{Body, Corner};
+use super::settle::{LEAST_COSINE, is_faulty};
 use glam::DVec3;
 
 /// One way to split: triangles `from..to` of the fan stay, the others go to the new corner.
@@ -36,17 +37,39 @@ fn is_lost(body: &Body, c: u32) -> bool {
 fn best_split(body: &Body, c: u32) -> Option<(Vec<u32>, Split)> {
     let fan = fan(body, c)?;
     let splits = ways(body, c, &fan);
-    let best = splits.into_iter().min_by(|a, b| {
-        rank(body, c, a).partial_cmp(&rank(body, c, b)).unwrap_or(std::cmp::Ordering::Equal)
-    })?;
-    Some((fan, best))
+    let ranked = splits.into_iter().map(|s| (rank(body, c, &fan, &s), s));
+    let best = ranked.min_by(|(a, _), (b, _)| a.partial_cmp(b).unwrap_or(std::cmp::Ordering::Equal));
+    best.map(|(_, s)| (fan, s))
 }
 
-/// Halves without a place, then the longer way.
-fn rank(body: &Body, c: u32, s: &Split) -> (usize, f64) {
+/// Halves without a place, then triangles that the split leaves faulty, then the longer way. Several spokes of one facet
+/// place both halves alike; only from the one where the surface really parts do the two new triangles face outward.
+fn rank(body: &Body, c: u32, fan: &[u32], s: &Split) -> (usize, usize, f64) {
     let lost = s.at.iter().filter(|x| x.is_none()).count();
     let anchor = body.corners[c as usize].anchor;
-    (lost, s.at.iter().flatten().map(|x| x.distance(anchor)).fold(0.0, f64::max))
+    (lost, faulty(body, c, fan, s), s.at.iter().flatten().map(|x| x.distance(anchor)).fold(0.0, f64::max))
+}
+
+/// Triangles around both halves, and the two between them, that would be turned over or have no area. What hangs on a half
+/// without a place is not counted: where that goes is not known yet.
+fn faulty(body: &Body, c: u32, fan: &[u32], s: &Split) -> usize {
+    let at = |x: u32| body.corners[x as usize].at;
+    let around = fan.iter().enumerate().filter_map(|(k, &t)| {
+        let half = s.at[usize::from(!(s.from..s.to).contains(&k))]?;
+        let [before, after] = spokes(body, c, t)?;
+        Some(([half, at(before), at(after)], body.facet[t as usize]))
+    });
+    let between =
+        [(s.from, s.fill[0]), (s.to, s.fill[1])].into_iter().enumerate().filter_map(|(k, (spoke, f))| {
+            let end = at(spokes(body, c, fan[spoke % fan.len()])?[0]);
+            let [mine, other] = [s.at[0]?, s.at[1]?];
+            Some((if k == 0 { [end, mine, other] } else { [mine, end, other] }, f))
+        });
+    let normal = |f: u32| body.moved[f as usize].plane.normal;
+    around
+        .chain(between)
+        .filter(|&(points, f)| is_faulty(points, normal(f), body.slack, LEAST_COSINE))
+        .count()
 }
 
 /// The triangles around a corner, counter-clockwise from its lowest; `None` where they are not one fan.
