@@ -155,6 +155,15 @@ fn plain_shapes_are_parted_by_a_plane_and_leave() {
     }
 }
 
+/// A millimetre of part in a block of forty: what rounding leaves along its keys and screws is not the cavity's.
+#[test]
+fn a_tiny_part_keeps_its_cavity() {
+    let tiny = wavy().map(|v| v * 0.05);
+    let report = measured(&make(&tiny, &spec("tiny", Route::Rigid)).unwrap());
+    let cavity = report.measured.iter().find(|m| m.of == "cavity against part").unwrap();
+    assert!(cavity.kept, "{cavity:?}");
+}
+
 #[test]
 fn a_plate_that_waves_is_parted_by_steps_and_leaves() {
     let mold = make(&wavy(), &spec("wavy", Route::Rigid)).unwrap();

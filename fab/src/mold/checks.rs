@@ -6,6 +6,7 @@ use crate::bvh::Bvh;
 use crate::mesh::Mesh;
 use crate::mold::figures::Figures;
 use crate::mold::frame::upright;
+use crate::mold::layout::BEYOND;
 use crate::mold::plan::Plan;
 use crate::mold::ray;
 use crate::mold::rigid::{KEY_TIP, Tools};
@@ -63,7 +64,10 @@ fn volumes(mold: &Mold, h: &Halves, tools: &Tools) -> Result<Vec<Measured>, NotS
     let block = Solid::of(&cuboid(mold.plan.low, mold.plan.high))?;
     let air = Solid::all(vec![tools.sockets.clone(), tools.above.clone(), tools.bolts.clone()]);
     let matter = Solid::all(pieces.clone());
-    let inside = block.minus(&matter).minus(&air);
+    // Skins along keys and screws, which rounding leaves, are no cavity; they count in the balance of the block.
+    let (low, high) = mold.part.bounds();
+    let around = Solid::of(&cuboid(low - BEYOND, high + BEYOND))?.common(&block);
+    let inside = around.minus(&matter).minus(&air);
     let cavity = inside.volume() + part.common(&air).volume();
     let area = h.all().iter().map(|m| m.area()).sum::<f64>() + mold.part.area();
     let (volume, round_off) = (part.volume(), volume_round_off(area, mold.snap));
