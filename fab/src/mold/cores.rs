@@ -68,7 +68,7 @@ const BEYOND: f64 = 1.0;
 #[derive(Clone, Copy, PartialEq)]
 pub enum Skins {
     Kept,
-    /// Cores count as a little wider than they are: skins along their walls are nobody's, and later cores keep off them.
+    /// Cores count as a little wider than they are: skins along their walls are nobody's.
     Passed,
 }
 
@@ -92,14 +92,14 @@ pub fn cores(
         let Some(d) = best((part, &tree), &ways, &left.mesh()) else { break };
         let view = View { ready, d, turn: upright(d), lid: reach(d, block) + GRIP, tan };
         let room = Solid::all(rooms(&view, &left, enough)?);
-        let passed = |room: &Solid, way: DVec3| match skins {
-            Skins::Kept => room.clone(),
-            Skins::Passed => widened(room, upright(way), &AROUND),
-        };
-        let room = cores.iter().fold(room, |c, earlier| c.minus(&passed(&earlier.room, earlier.pull)));
+        let room = cores.iter().fold(room, |c, earlier| c.minus(&earlier.room));
         let found = apart(&room, &view, enough);
         let before = left.volume();
-        left = found.iter().fold(left, |l, core| l.minus(&passed(&core.room, d))).thick(FINE);
+        let passed = |room: &Solid| match skins {
+            Skins::Kept => room.clone(),
+            Skins::Passed => widened(room, view.turn, &AROUND),
+        };
+        left = found.iter().fold(left, |l, core| l.minus(&passed(&core.room))).thick(FINE);
         if before - left.volume() <= enough {
             break;
         }
