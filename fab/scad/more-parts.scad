@@ -50,6 +50,8 @@ $fn = @sides@;
 beyond = 1;
 // Moves what was made to meet the part in a line, mm, so that rounding does not make it touch in points.
 aside = @aside@;
+// How many times that copies of one core stand apart: the steps between them stay larger than those beside what is only aside.
+copies_apart = 4;
 
 module box(a, b) { translate(a) cube(b - a); }
 
@@ -72,7 +74,7 @@ module below() if (below == "") box(low, [high[0], high[1], parting]); else tran
 // A core as it is meets the part in its own walls; taken on all sides of its place it leaves no skin there.
 module cores() for (k = [0:len(core_rooms) - 1])
     if (core_rooms[k] == "") for (s = [[1, 1, 1], [1, -1, -1], [-1, 1, -1], [-1, -1, 1]])
-        translate(4 * [for (i = [0:2]) s[i] * aside[i]]) import(core_files[k], convexity = 20);
+        translate(copies_apart * [for (i = [0:2]) s[i] * aside[i]]) import(core_files[k], convexity = 20);
     else translate(aside) import(core_rooms[k], convexity = 20);
 
 module lower() difference() {
