@@ -40,14 +40,15 @@ vents = @vents@;
 /* [Hidden] */
 $fn = @sides@;
 beyond = 1;
+grid = @grid@;
 wider = [for (k = [0, 1]) max(0, (least_side - (part_high[k] - part_low[k] + 2 * rim)) / 2)];
 room = key_height + key_clearance + edge;
 low = [part_low[0] - rim - wider[0], part_low[1] - rim - wider[1], min(part_low[2] - silicone, parting - room)];
 high = [part_high[0] + rim + wider[0], part_high[1] + rim + wider[1], max(part_high[2] + silicone, parting + room)];
 middle = (low + high) / 2;
 keys = [[low[0] + rim / 2, middle[1]], [high[0] - rim / 2, middle[1]], [middle[0], low[1] + rim / 2]];
-thick = max(room, wall);
-lift = thick / 2;
+// Half the board, on the grid of the files: a part on it stays on it when it is moved.
+lift = round(max(room, wall) / 2 / grid) * grid;
 
 module box(a, b) { translate(a) cube(b - a); }
 

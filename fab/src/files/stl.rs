@@ -44,9 +44,14 @@ pub fn grid_distance(largest: f64) -> f64 {
     snap_distance(largest).max(GRID / 2.0 * 3f64.sqrt())
 }
 
+/// The place of `GRID` nearest to a coordinate, mm.
+pub fn grid_place(x: f64) -> f64 {
+    (x / GRID).round() * GRID
+}
+
 /// The mesh as STL can hold it, on `GRID`: equal vertices united, triangles that vanish by it left out.
 pub fn on_grid(mesh: &Mesh) -> Mesh {
-    snapped(&mesh.map(|v| (v / GRID).round() * GRID))
+    snapped(&mesh.map(|v| DVec3::from_array(v.to_array().map(grid_place))))
 }
 
 /// The solid as STL can hold it on `GRID`, of the same shape, closed and without triangles that cross or have no area: detail that

@@ -9,7 +9,7 @@ use crate::mold::frame::upright;
 use crate::mold::layout::BEYOND;
 use crate::mold::plan::Plan;
 use crate::mold::ray;
-use crate::mold::rigid::{KEY_TIP, Tools};
+use crate::mold::rigid::{KEY_TIP, Tools, channel};
 use crate::mold::shadow::{self, Side};
 use crate::mold::tops::Top;
 use crate::mold::{Measured, Mold, silicone};
@@ -23,6 +23,10 @@ pub const CAVITY_SHARE: f64 = 1e-4;
 fn volume_round_off(surface: f64, snap: f64) -> f64 {
     surface * snap
 }
+
+/// What rounding leaves between a channel and the file's is no thicker: a corner goes one snap, and those nearer than four
+/// may be united.
+const SKIN_IN_SNAPS: f64 = 4.0;
 
 pub struct Halves<'a> {
     pub lower: &'a Mesh,
@@ -64,11 +68,14 @@ fn volumes(mold: &Mold, h: &Halves, tools: &Tools) -> Result<Vec<Measured>, NotS
     let block = Solid::of(&cuboid(mold.plan.low, mold.plan.high))?;
     let air = Solid::all(vec![tools.sockets.clone(), tools.above.clone(), tools.bolts.clone()]);
     let matter = Solid::all(pieces.clone());
-    // Skins along keys and screws, which rounding leaves, are no cavity; they count in the balance of the block.
+    // Skins along keys, screws and channels, which rounding leaves, are no cavity; they count in the balance of the block.
     let (low, high) = mold.part.bounds();
     let around = Solid::of(&cuboid(low - BEYOND, high + BEYOND))?.common(&block);
-    let inside = around.minus(&matter).minus(&air);
-    let cavity = inside.volume() + part.common(&air).volume();
+    let channels = mold.plan.sprues.iter().chain(&mold.plan.vents);
+    let channels = channels.map(|c| channel(c, SKIN_IN_SNAPS * mold.snap)).collect::<Result<Vec<_>, _>>()?;
+    let beside = air.with(&Solid::all(channels));
+    let inside = around.minus(&matter).minus(&beside);
+    let cavity = inside.volume() + part.common(&beside).volume();
     let area = h.all().iter().map(|m| m.area()).sum::<f64>() + mold.part.area();
     let (volume, round_off) = (part.volume(), volume_round_off(area, mold.snap));
     let channels = block.common(&air).minus(&part).minus(&matter).volume();
@@ -87,7 +94,7 @@ fn volumes(mold: &Mold, h: &Halves, tools: &Tools) -> Result<Vec<Measured>, NotS
         ),
         Measured::at_most(
             "shape of the cavity against the part's, by what only one of them has",
-            (inside.minus(&part).volume() + part.minus(&air).minus(&inside).volume()) / volume * 100.0,
+            (inside.minus(&part).volume() + part.minus(&beside).minus(&inside).volume()) / volume * 100.0,
             (CAVITY_SHARE + volume_round_off(mold.part.area(), mold.snap) / volume) * 100.0,
             "%",
             "0.01 % of the part's volume, and round-off",

@@ -79,7 +79,7 @@ pub fn plan(part: &Mesh, parting: f64, tops: &[Top], f: &Figures, a: Around) -> 
     let screw = f.bolt.value / 2.0 + EDGE;
     let (left, right, front, rear) = (low.x + screw, high.x - screw, low.y + screw, high.y - screw);
     let corners = [(left, front), (right, front), (right, rear), (left, rear)].map(DVec2::from);
-    let (sprues, vents) = channels(part, tops, high.z, f);
+    let (sprues, vents) = channels(part, parting, tops, high.z, f);
     Plan {
         low,
         high,
@@ -158,14 +158,20 @@ fn slots(low: DVec3, high: DVec3, parting: f64, f: &Figures) -> Vec<(DVec3, DVec
 }
 
 /// A sprue for each body at its highest point (of points equally high, the one over most matter), vents for the others.
-fn channels(part: &Mesh, tops: &[Top], up_to: f64, f: &Figures) -> (Vec<Channel>, Vec<Channel>) {
+fn channels(
+    part: &Mesh,
+    parting: f64,
+    tops: &[Top],
+    up_to: f64,
+    f: &Figures,
+) -> (Vec<Channel>, Vec<Channel>) {
     let tree = Bvh::new(part);
     let (lo, hi) = part.bounds();
     let gate = f.sprue.value.min(GATE_SHARE * (hi - lo).truncate().min_element()).max(f.vent.value);
     let channel = |at: DVec3, below: f64, above: f64| {
         let thick =
             ray::first((part, &tree), at - DVec3::Z * FOOT_STEP, DVec3::NEG_Z, 0.0).map_or(FOOT, |h| h.at);
-        let foot = at - DVec3::Z * FOOT.min(thick / 2.0);
+        let foot = at - DVec3::Z * depth(FOOT.min(thick / 2.0), at.z - parting);
         Channel { foot, height: up_to - foot.z, below, above }
     };
     let whole = |t: &&Top| t.prominence.is_infinite();
@@ -180,6 +186,12 @@ fn channels(part: &Mesh, tops: &[Top], up_to: f64, f: &Figures) -> (Vec<Channel>
         }
     }
     (sprues, vents)
+}
+
+/// The depth of a foot below a top that is `up` above the parting plane, both mm: as it is, or half way to the plane where it
+/// would come near that. A channel wider than the part there would leave a skin between its foot and the plane.
+fn depth(deep: f64, up: f64) -> f64 {
+    if (up - deep).abs() < up / 2.0 { up / 2.0 } else { deep }
 }
 
 /// How far below a high point the thickness is measured from, mm, so that the ray does not meet the ceiling itself.

@@ -143,7 +143,22 @@ pub fn blank(ready: &Ready, spec: &MoldSpec, plan: Plan, draft: f64) -> Mold {
             finding(&mold, Severity::Note, vec![], what.clone(), "nothing to do; the volume stayed the same");
         mold.findings.push(found);
     }
+    mold.findings.extend(wide_gate(&mold));
     mold
+}
+
+/// Told of a part that is narrower than the gate it is filled through.
+fn wide_gate(mold: &Mold) -> Option<Finding> {
+    let (lo, hi) = mold.part.bounds();
+    let across = (hi - lo).truncate().min_element();
+    let gate = mold.plan.sprues.iter().find(|s| s.below > across)?;
+    let what = format!(
+        "the gate, {:.2} mm, is wider than the part, {across:.2} mm across: it shapes what it covers, and may cut the mold \
+         apart there",
+        gate.below
+    );
+    let remedy = "print this part instead of casting it";
+    Some(finding(mold, Severity::Warning, vec![gate.foot], what, remedy))
 }
 
 /// A finding with its place in the part's own frame.

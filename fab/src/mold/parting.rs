@@ -5,6 +5,7 @@
 //! the part is one stretch through c. The steps are upright walls under (or over) the silhouette: they have no draft.
 
 use crate::bvh::Bvh;
+use crate::files::stl::grid_place;
 use crate::mesh::{Mesh, area};
 use crate::mold::curtain::{Seen, To};
 use crate::mold::fill::{into, prism};
@@ -47,7 +48,8 @@ pub struct Plane {
     pub wrong: f64,
 }
 
-/// The plane that parts best: in the middle of all that part exactly, or where the least area is on the wrong side.
+/// The plane that parts best: in the middle of all that part exactly, or where the least area is on the wrong side. It is a
+/// plane of the files' grid, so that what was cut along it meets without a skin when it is read back.
 pub fn plane(part: &Mesh, looks: &[Look], snap: f64) -> Plane {
     let heights = |l: Look| {
         let of = part.triangles.iter().zip(looks).filter(move |(_, k)| **k == l).flat_map(|(t, _)| *t);
@@ -56,7 +58,7 @@ pub fn plane(part: &Mesh, looks: &[Look], snap: f64) -> Plane {
     let lowest = heights(Look::Up).fold(f64::INFINITY, f64::min);
     let highest = heights(Look::Down).fold(f64::NEG_INFINITY, f64::max);
     if highest <= lowest + WALL_IN_SNAPS * snap {
-        return Plane { height: (lowest + highest) / 2.0, wrong: 0.0 };
+        return Plane { height: grid_place((lowest + highest) / 2.0), wrong: 0.0 };
     }
     compromise(part, looks)
 }
@@ -67,7 +69,7 @@ const HEIGHTS: usize = 64;
 fn compromise(part: &Mesh, looks: &[Look]) -> Plane {
     let (lo, hi) = part.bounds();
     let step = (hi.z - lo.z) / HEIGHTS as f64;
-    let heights = (1..HEIGHTS).map(|k| lo.z + step * k as f64);
+    let heights = (1..HEIGHTS).map(|k| grid_place(lo.z + step * k as f64));
     let rated = heights.map(|height| Plane { height, wrong: wrong(part, looks, height) });
     rated.min_by(|a, b| a.wrong.total_cmp(&b.wrong)).unwrap_or(Plane { height: lo.z, wrong: f64::INFINITY })
 }

@@ -12,9 +12,11 @@ use glam::{DVec2, DVec3};
 /// A key narrows to this share of its diameter: 27 degrees of draft for one half as high as wide.
 pub const KEY_TIP: f64 = 0.5;
 
-pub fn channel(c: &Channel) -> Result<Solid, NotSolid> {
+/// A sprue or vent, grown by `air` on its side and at its foot.
+pub fn channel(c: &Channel, air: f64) -> Result<Solid, NotSolid> {
     let widening = (c.above - c.below) / c.height;
-    Solid::of(&frustum(c.foot, c.height + BEYOND, c.below / 2.0, (c.above + widening * BEYOND) / 2.0))
+    let (below, above) = (c.below / 2.0 + air, (c.above + widening * BEYOND) / 2.0 + air);
+    Solid::of(&frustum(c.foot - DVec3::Z * air, c.height + BEYOND + air, below, above))
 }
 
 fn bolt(plan: &Plan, at: DVec2, d: f64) -> Result<Solid, NotSolid> {
@@ -49,7 +51,7 @@ impl Tools {
                 .sprues
                 .iter()
                 .chain(&plan.vents)
-                .map(channel)
+                .map(|c| channel(c, 0.0))
                 .chain(plan.slots.iter().map(slot))
                 .collect())?,
         })

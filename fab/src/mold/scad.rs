@@ -123,8 +123,12 @@ fn two_part(mold: &Mold) -> String {
 /// The source of the prints for a silicone mold.
 pub fn silicone(mold: &Mold) -> String {
     let around = Around::silicone(&mold.figures);
-    let own =
-        [("silicone", around.wall.to_string()), ("rim", around.rim.to_string()), ("lip", LIP.to_string())];
+    let own = [
+        ("silicone", around.wall.to_string()),
+        ("rim", around.rim.to_string()),
+        ("lip", LIP.to_string()),
+        ("grid", stl::GRID.to_string()),
+    ];
     filled(SILICONE, &[common(mold), own.to_vec()].concat())
 }
 

@@ -5,6 +5,7 @@
 //! The board keeps the halves apart by its thickness; the silicone halves, put together without it, leave the part.
 //! Undercuts are allowed: silicone gives way. Not promised: that it gives way everywhere without tearing.
 
+use crate::files::stl::grid_place;
 use crate::mold::figures::Figures;
 use crate::mold::layout::{BEYOND, EDGE};
 use crate::mold::plan::Plan;
@@ -15,9 +16,10 @@ use glam::DVec3;
 /// A lip around the box walls keeps them in place: its height and width, mm.
 pub const LIP: f64 = 3.0;
 
-/// Thick enough that the dents of the keys leave a floor.
-pub fn board_thickness(f: &Figures) -> f64 {
-    (f.key_height.value + f.key_clearance.value + EDGE).max(f.wall.value)
+/// Half the board's thickness: so much that the dents of the keys leave a floor, and then on the files' grid. Part and
+/// parting are on that grid, and stay on it when a half is moved by this: nothing is rounded between the two pours.
+pub fn lift(f: &Figures) -> f64 {
+    grid_place((f.key_height.value + f.key_clearance.value + EDGE).max(f.wall.value) / 2.0)
 }
 
 /// Everything that is printed.
@@ -28,7 +30,7 @@ pub struct Prints {
 }
 
 pub fn prints(part: &Solid, plan: &Plan, f: &Figures) -> Result<Prints, NotSolid> {
-    let lift = DVec3::Z * (board_thickness(f) / 2.0);
+    let lift = DVec3::Z * lift(f);
     let all =
         |solids: Vec<Result<Solid, NotSolid>>| Ok(Solid::all(solids.into_iter().collect::<Result<_, _>>()?));
     let (lo, hi, c) = (plan.low, plan.high, plan.parting);
@@ -36,7 +38,7 @@ pub fn prints(part: &Solid, plan: &Plan, f: &Figures) -> Result<Prints, NotSolid
     let below = Solid::of(&cuboid(lo, hi.with_z(c)))?;
     let cones: Solid = all(plan.keys.iter().map(|k| key(k.at, f, f.key_clearance.value)).collect())?;
     let dents: Solid = all(plan.keys.iter().map(|k| key(k.at, f, 0.0)).collect())?;
-    let channels: Solid = all(plan.sprues.iter().chain(&plan.vents).map(channel).collect())?;
+    let channels: Solid = all(plan.sprues.iter().chain(&plan.vents).map(|c| channel(c, 0.0)).collect())?;
     // Channels stand on the board where they come down beside the part.
     let channels = channels.common(&Solid::of(&cuboid(lo.with_z(c), hi + DVec3::Z * BEYOND))?);
     let outer = DVec3::new(1.0, 1.0, 0.0) * (f.wall.value + f.key_clearance.value + LIP);
@@ -74,7 +76,7 @@ fn lips(plan: &Plan, f: &Figures, lift: DVec3) -> Result<Solid, NotSolid> {
 
 /// What both pours become around a board (as written), with the board taken away: lower and upper silicone half.
 pub fn pours(board: &Solid, plan: &Plan, f: &Figures) -> Result<[Solid; 2], NotSolid> {
-    let lift = DVec3::Z * (board_thickness(f) / 2.0);
+    let lift = DVec3::Z * lift(f);
     let (lo, hi, c) = (plan.low, plan.high, plan.parting);
     let below = Solid::of(&cuboid(lo - lift, hi.with_z(c) - lift))?;
     let above = Solid::of(&cuboid(lo.with_z(c) + lift, hi + lift))?;
