@@ -71,11 +71,14 @@ module bolts() for (b = bolts)
 
 module below() if (below == "") box(low, [high[0], high[1], parting]); else translate(aside) import(below, convexity = 20);
 
-// A core as it is meets the part in its own walls; taken on all sides of its place it leaves no skin there.
+module place(k) import(core_rooms[k] == "" ? core_files[k] : core_rooms[k], convexity = 20);
+
+// A core as it is meets the part in its own walls, and a later one the earlier ones; taken on all sides of its place it
+// leaves no skin there.
 module cores() for (k = [0:len(core_rooms) - 1])
-    if (core_rooms[k] == "") for (s = [[1, 1, 1], [1, -1, -1], [-1, 1, -1], [-1, -1, 1]])
-        translate(copies_apart * [for (i = [0:2]) s[i] * aside[i]]) import(core_files[k], convexity = 20);
-    else translate(aside) import(core_rooms[k], convexity = 20);
+    if (k > 0 || core_rooms[k] == "") for (s = [[1, 1, 1], [1, -1, -1], [-1, 1, -1], [-1, -1, 1]])
+        translate(copies_apart * [for (i = [0:2]) s[i] * aside[i]]) place(k);
+    else translate(aside) place(k);
 
 module lower() difference() {
     union() {
@@ -98,8 +101,8 @@ module upper() difference() {
     cores();
 }
 
-module core(k) if (core_rooms[k] == "") import(core_files[k], convexity = 20);
-else difference() { translate(aside) import(core_rooms[k], convexity = 20); import(part, convexity = 20); }
+module core(k) if (core_rooms[k] == "") place(k);
+else difference() { translate(aside) place(k); import(part, convexity = 20); }
 
 if (half == "lower" || half == "all") lower();
 if (half == "upper") upper();

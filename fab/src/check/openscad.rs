@@ -21,7 +21,7 @@ const GATE: &str = include_str!("../../scad/gate.scad");
 const CUBE: f64 = 1.0;
 
 /// How far OpenSCAD's volume may be from ours, relative: the figure of the workshop's pass rules.
-const VOLUME_TOLERANCE: f64 = 0.001;
+pub const VOLUME_TOLERANCE: f64 = 0.001;
 
 /// How far beyond the part the cube stands, in mm: enough that nothing of it is near.
 const ASIDE: f64 = 10.0;

@@ -23,6 +23,8 @@ pub struct Core {
     pub solid: Solid,
     /// The core and what its shaft takes of the part's own room: the halves leave it free.
     pub room: Solid,
+    /// What its shaft takes before it is divided into pieces: less the part, the core or several.
+    pub shaft: Solid,
     /// The way it leaves, unit.
     pub pull: DVec3,
 }
@@ -117,9 +119,9 @@ fn apart(room: &Solid, view: &View, enough: f64) -> Vec<Core> {
         let room = stl::uncrossed(&room).unwrap_or(room);
         let whole = room.minus(&view.ready.solid).thick(FINE);
         let mut solids: Vec<Solid> = whole.bodies().into_iter().filter(matter).collect();
-        let core = |solid: Solid, room: Solid| Core { solid, room, pull: view.d };
+        let core = |solid: Solid, own: Solid| Core { solid, room: own, shaft: room.clone(), pull: view.d };
         match solids.len() {
-            1 => all.extend(solids.pop().map(|solid| core(solid, room))),
+            1 => all.extend(solids.pop().map(|solid| core(solid, room.clone()))),
             _ => all.extend(solids.into_iter().map(|solid| core(solid.clone(), solid))),
         }
     }

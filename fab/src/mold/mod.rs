@@ -24,6 +24,7 @@ mod prepare;
 pub mod pull;
 pub mod ray;
 mod rigid;
+mod rooms;
 mod scad;
 pub mod shadow;
 mod silicone;

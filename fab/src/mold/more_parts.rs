@@ -9,10 +9,11 @@ use crate::mold::checks::{self, Halves, core_name};
 use crate::mold::cores::{self, Core, Cored, Skins};
 use crate::mold::frame::{Footprint, upright};
 use crate::mold::layout::{self, Around};
-use crate::mold::make::{blank, finding, push};
+use crate::mold::make::{blank, finding, keep, push};
 use crate::mold::plan::Plan;
 use crate::mold::prepare::{self, Ready};
 use crate::mold::rigid::{self, Tools};
+use crate::mold::rooms::Place;
 use crate::mold::{Kind, Mold, MoldError, MoldSpec, parting, pictures, scad, two_part};
 use crate::report::{Finding, Severity};
 use crate::solid::Solid;
@@ -122,6 +123,9 @@ fn candidate(
 const KEYS: usize = 3;
 const BOLTS: usize = 2;
 
+/// How far a core's room may go into the part, as a share of the least wall: two cores on both sides of a wall keep apart.
+const MARGIN: f64 = 0.25;
+
 /// What the halves form beside the cores.
 #[derive(Clone, Copy)]
 enum Formed {
@@ -178,9 +182,11 @@ fn built(candidate: &Candidate, formed: Formed, spec: &MoldSpec) -> Result<Resul
     if let Some(wrong) = mold.findings.iter().find(|f| f.severity == Severity::Error) {
         return Ok(Err(wrong.what.clone()));
     }
-    let roomy = |c: &&Core| c.room.volume() > c.solid.volume();
-    for (k, core) in cored.cores.iter().enumerate().filter(|(_, c)| roomy(c)) {
-        push(&mut mold, &scad::room_name(&core_name(k)), Kind::Room, &core.room, DVec3::ZERO, 0);
+    let place = Place::new(&ready.solid, spec.figures.least_wall.value * MARGIN);
+    for (k, core) in cored.cores.iter().enumerate() {
+        if let Some((room, settled)) = place.room(core) {
+            keep(&mut mold, (&scad::room_name(&core_name(k)), Kind::Room), (&room, settled), DVec3::ZERO, 0);
+        }
     }
     assign(&mut mold, &cored.cores);
     told(&mut mold, cored);

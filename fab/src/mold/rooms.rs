@@ -1,0 +1,58 @@
+//! Takes a side core, the room of its shaft, and the part; gives a solid that a file can hold and that, less the part, is the
+//! core: what the OpenSCAD source reads instead of the core, to make the core again.
+//!
+//! A room goes through the part, and touches itself there in lines, which is no solid to other kernels. What it takes of
+//! the part's place does not matter: so the part is added, or that place left but for a margin around the core. What comes
+//! of it is compared with the core. Not promised: that one of these is a solid.
+
+use crate::files::stl;
+use crate::mold::cores::{Core, FINE};
+use crate::mold::make::Settled;
+use crate::solid::Solid;
+use glam::DVec3;
+
+/// What the rooms of a mold's cores are made with.
+pub struct Place<'a> {
+    part: &'a Solid,
+    /// The part but for a skin, so that it has no wall in common with the part.
+    inner: Solid,
+    /// How far a core's margin goes into the part, mm.
+    margin: f64,
+}
+
+impl Place<'_> {
+    pub fn new(part: &Solid, margin: f64) -> Place<'_> {
+        let corners = [DVec3::new(1.0, 1.0, 1.0), DVec3::new(1.0, -1.0, -1.0)];
+        let corners = corners.into_iter().flat_map(|c| [c, DVec3::new(-c.x, -c.y, c.z)]);
+        let inner = corners.fold(part.clone(), |p, c| p.common(&part.moved(c * SKIN)));
+        Place { part, inner, margin }
+    }
+
+    /// A room for the core as a file can hold it.
+    pub fn room(&self, core: &Core) -> Option<(Solid, Settled)> {
+        let near = || core.shaft.common(&self.around(&core.solid));
+        let ways: [&dyn Fn() -> Solid; 4] =
+            [&|| core.shaft.clone(), &|| core.shaft.with(&self.inner), &near, &|| near().with(&self.inner)];
+        ways.into_iter().find_map(|way| self.kept(way(), core))
+    }
+
+    fn around(&self, solid: &Solid) -> Solid {
+        let ways = DVec3::AXES.into_iter().flat_map(|a| [a, -a]);
+        let aside = ways.map(|a| solid.moved(a * self.margin));
+        Solid::all(std::iter::once(solid.clone()).chain(aside).collect())
+    }
+
+    /// The room, if a file can hold it and it leaves the core.
+    fn kept(&self, room: Solid, core: &Core) -> Option<(Solid, Settled)> {
+        let (mesh, size) = stl::settled(&room).filter(|(m, _)| stl::is_plain(m))?;
+        let left = Solid::of(&mesh).ok()?.minus(self.part).thick(FINE);
+        let apart = left.minus(&core.solid).volume() + core.solid.minus(&left).volume();
+        (apart <= SAME * core.solid.volume()).then_some((room, Some((mesh, size))))
+    }
+}
+
+/// Cores that differ by less than this share of their volume are the same: half of what two kernels may differ by.
+const SAME: f64 = crate::check::openscad::VOLUME_TOLERANCE / 2.0;
+
+/// Depth of the skin, mm, along each axis: twice what the source moves rooms by, so that they stay within the part.
+const SKIN: f64 = 320.0 * stl::GRID;
