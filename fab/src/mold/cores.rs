@@ -128,9 +128,13 @@ fn apart(room: &Solid, view: &View, enough: f64) -> Vec<Core> {
     all
 }
 
-/// Both ends of every direction of the pull search.
+/// Both ends of every direction of the pull search. One that over the part strays from a plane of the frame by less than
+/// `FINE` does so by round-off of the facets that it was taken from, and is put into that plane.
 fn directions(part: &Mesh) -> Vec<DVec3> {
-    pull::candidates(part).into_iter().flat_map(|d| [d, -d]).collect()
+    let (lo, hi) = part.bounds();
+    let level = FINE / (hi - lo).max_element();
+    let put = |d: DVec3| DVec3::select(d.abs().cmplt(DVec3::splat(level)), DVec3::ZERO, d).normalize();
+    pull::candidates(part).into_iter().map(put).flat_map(|d| [d, -d]).collect()
 }
 
 /// Points on the walls of the undercut air, just inside it.
