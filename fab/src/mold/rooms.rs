@@ -14,8 +14,9 @@ use glam::DVec3;
 /// What the rooms of a mold's cores are made with.
 pub struct Place<'a> {
     part: &'a Solid,
-    /// The part but for a skin, so that it has no wall in common with the part.
+    /// The part but for a skin, and with one more: so that they have no wall in common with the part.
     inner: Solid,
+    outer: Solid,
     /// How far a core's margin goes into the part, mm.
     margin: f64,
 }
@@ -24,15 +25,24 @@ impl Place<'_> {
     pub fn new(part: &Solid, margin: f64) -> Place<'_> {
         let corners = [DVec3::new(1.0, 1.0, 1.0), DVec3::new(1.0, -1.0, -1.0)];
         let corners = corners.into_iter().flat_map(|c| [c, DVec3::new(-c.x, -c.y, c.z)]);
-        let inner = corners.fold(part.clone(), |p, c| p.common(&part.moved(c * SKIN)));
-        Place { part, inner, margin }
+        let moved: Vec<Solid> = corners.map(|c| part.moved(c * SKIN)).collect();
+        let inner = moved.iter().fold(part.clone(), |p, m| p.common(m));
+        let outer = moved.iter().fold(part.clone(), |p, m| p.with(m));
+        Place { part, inner, outer, margin }
     }
 
     /// A room for the core as a file can hold it.
     pub fn room(&self, core: &Core) -> Option<(Solid, Settled)> {
         let near = || core.shaft.common(&self.around(&core.solid));
-        let ways: [&dyn Fn() -> Solid; 4] =
-            [&|| core.shaft.clone(), &|| core.shaft.with(&self.inner), &near, &|| near().with(&self.inner)];
+        let plain = || stl::uncrossed(&core.solid).unwrap_or_else(Solid::nothing);
+        let grown = || plain().with(&self.outer.common(&self.around(&plain())));
+        let ways: [&dyn Fn() -> Solid; 5] = [
+            &|| core.shaft.clone(),
+            &|| core.shaft.with(&self.inner),
+            &near,
+            &|| near().with(&self.inner),
+            &grown,
+        ];
         ways.into_iter().find_map(|way| self.kept(way(), core))
     }
 
