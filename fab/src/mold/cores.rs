@@ -111,7 +111,7 @@ pub fn cores(
     Ok((left_mm3 <= enough && !cores.is_empty()).then(|| Cored { filled: filled.clone(), cores, left_mm3 }))
 }
 
-/// A room's cores, each in one body.
+/// A room's cores, each in one body; one that stands before another leaves first.
 fn apart(room: &Solid, view: &View, enough: f64) -> Vec<Core> {
     let matter = |b: &Solid| b.mesh().volume() > enough;
     let mut all = Vec::new();
@@ -125,7 +125,15 @@ fn apart(room: &Solid, view: &View, enough: f64) -> Vec<Core> {
             _ => all.extend(solids.into_iter().map(|solid| core(solid.clone(), solid))),
         }
     }
-    all
+    let foot = |c: &Core| low(&c.solid.mesh(), view.d);
+    let mut footed: Vec<(f64, Core)> = all.into_iter().map(|c| (foot(&c), c)).collect();
+    footed.sort_by(|a, b| b.0.total_cmp(&a.0));
+    footed.into_iter().map(|c| c.1).collect()
+}
+
+/// Where a mesh begins along a direction.
+fn low(mesh: &Mesh, d: DVec3) -> f64 {
+    mesh.vertices.iter().map(|v| v.dot(d)).fold(f64::INFINITY, f64::min)
 }
 
 /// Both ends of every direction of the pull search. One that over the part strays from a plane of the frame by less than
@@ -181,7 +189,7 @@ struct View<'a> {
 fn rooms(view: &View, left: &Solid, enough: f64) -> Result<Vec<Solid>, NotSolid> {
     let (part, d) = (&view.ready.framed.mesh, view.d);
     let seen = Seen::along(part, d, view.ready.framed.snap);
-    let low = left.mesh().vertices.iter().map(|v| v.dot(d)).fold(f64::MAX, f64::min) - 2.0 * BEYOND;
+    let low = low(&left.mesh(), d) - 2.0 * BEYOND;
     let above = |t: usize| part.corners(t).iter().any(|c| c.dot(d) > low);
     let shade = Solid::all(seen.rooted(&seen.looking(Look::Down, above), To::Against(low - BEYOND))?);
     let air = left.minus(&shade).thick(FINE);
