@@ -43,7 +43,7 @@ impl Place<'_> {
             &|| near().with(&self.inner),
             &grown,
         ];
-        ways.into_iter().find_map(|way| self.kept(way(), core))
+        ways.into_iter().find_map(|way| self.kept(holding(&way(), core), core))
     }
 
     fn around(&self, solid: &Solid) -> Solid {
@@ -59,6 +59,12 @@ impl Place<'_> {
         let apart = left.minus(&core.solid).volume() + core.solid.minus(&left).volume();
         (apart <= SAME * core.solid.volume()).then_some((room, Some((mesh, size))))
     }
+}
+
+/// The bodies of a room that the core is in, without hollows.
+fn holding(room: &Solid, core: &Core) -> Solid {
+    let holds = |b: &Solid| b.mesh().volume() > 0.0 && b.common(&core.solid).volume() > FINE.powi(3);
+    Solid::all(room.bodies().into_iter().filter(holds).collect())
 }
 
 /// Cores that differ by less than this share of their volume are the same: half of what two kernels may differ by.
