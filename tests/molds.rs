@@ -155,13 +155,27 @@ fn plain_shapes_are_parted_by_a_plane_and_leave() {
     }
 }
 
-/// A millimetre of part in a block of forty: what rounding leaves along its keys and screws is not the cavity's.
+/// A millimetre of part in a block of forty: what rounding leaves along keys, screws, channels and the parting is not the
+/// cavity's, and there is no skin between the gate's foot and the parting.
 #[test]
 fn a_tiny_part_keeps_its_cavity() {
-    let tiny = wavy().map(|v| v * 0.05);
-    let report = measured(&make(&tiny, &spec("tiny", Route::Rigid)).unwrap());
-    let cavity = report.measured.iter().find(|m| m.of == "cavity against part").unwrap();
-    assert!(cavity.kept, "{cavity:?}");
+    for (name, part) in [("tiny-wavy", wavy()), ("tiny-ring", ring()), ("tiny-angle", angle())] {
+        for route in [Route::Rigid, Route::Silicone] {
+            let report = measured(&make(&part.map(|v| v * 0.05), &spec(name, route)).unwrap());
+            let cavity = report.measured.iter().find(|m| m.of == "cavity against part").unwrap();
+            assert!(cavity.value < 0.001, "{name}, {route:?}: {cavity:?}");
+        }
+    }
+}
+
+/// A part that is narrower than the narrowest gate is told so.
+#[test]
+fn a_gate_wider_than_the_part_is_told() {
+    let says = |scale: f64| {
+        let mold = make(&ring().map(|v| v * scale), &spec("gated", Route::Silicone)).unwrap();
+        mold.findings.iter().any(|f| f.severity == Severity::Warning && f.what.starts_with("the gate"))
+    };
+    assert!(says(0.02) && !says(1.0));
 }
 
 #[test]

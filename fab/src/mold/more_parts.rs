@@ -258,3 +258,32 @@ fn told(mold: &mut Mold, cored: &Cored) {
     let found = finding(mold, Severity::Note, vec![], what, "follow the order of the mold sheet");
     mold.findings.push(found);
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::solid::cuboid;
+
+    fn block(lo: [f64; 3], hi: [f64; 3]) -> Solid {
+        Solid::of(&cuboid(lo.into(), hi.into())).unwrap()
+    }
+
+    /// Two blocks of 10 mm with a bridge of the given thickness between them, which a core passes underneath.
+    fn bridged(thick: f64) -> (Solid, Core) {
+        let whole = block([0.0, 0.0, 0.0], [30.0, 10.0, 10.0]);
+        let room = block([10.0, -5.0, -5.0], [20.0, 15.0, 10.0 - thick]);
+        let core = Core { solid: room.clone(), shaft: room.clone(), room: room.clone(), pull: DVec3::NEG_Y };
+        (whole.minus(&room), core)
+    }
+
+    #[test]
+    fn what_hangs_by_less_than_a_wall_is_told_and_what_hangs_by_one_is_not() {
+        let says = |thick: f64| {
+            let (piece, core) = bridged(thick);
+            hanging(&piece, &[core], (0.8, 0.1), "the lower half")
+        };
+        let thin = says(0.3).unwrap();
+        assert!(thin.contains("of the lower half would hang"), "{thin}");
+        assert_eq!(says(1.0), None);
+    }
+}

@@ -72,3 +72,30 @@ const SAME: f64 = crate::check::openscad::VOLUME_TOLERANCE / 2.0;
 
 /// Depth of the skin, mm, along each axis: twice what the source moves rooms by, so that they stay within the part.
 const SKIN: f64 = 320.0 * stl::GRID;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::solid::cuboid;
+
+    fn block(lo: [f64; 3], hi: [f64; 3]) -> Solid {
+        Solid::of(&cuboid(lo.into(), hi.into())).unwrap()
+    }
+
+    /// A shaft that touches itself in a line within the part: no file holds it, and a room is found that leaves the same core.
+    #[test]
+    fn a_shaft_that_touches_itself_in_the_part_gets_a_room() {
+        let part =
+            block([0.0, 0.0, 0.0], [10.0, 10.0, 10.0]).minus(&block([2.0, 2.0, 5.0], [8.0, 8.0, 11.0]));
+        let pinched = block([1.0, 1.0, 1.0], [5.0, 9.0, 3.0]).with(&block([5.0, 1.0, 3.0], [9.0, 9.0, 20.0]));
+        let shaft = pinched.with(&block([1.0, 1.0, 6.0], [6.0, 9.0, 20.0]));
+        assert!(!stl::settled(&pinched).is_some_and(|(m, _)| stl::is_plain(&m)), "it touches itself");
+        let solid = shaft.minus(&part).thick(FINE);
+        let core = Core { solid: solid.clone(), room: shaft.clone(), shaft, pull: DVec3::Z };
+        let (_, settled) = Place::new(&part, 0.2).room(&core).unwrap();
+        let (mesh, _) = settled.unwrap();
+        assert!(stl::is_plain(&mesh));
+        let left = Solid::of(&mesh).unwrap().minus(&part).volume();
+        assert!((left - solid.volume()).abs() < SAME * solid.volume(), "{left} of {}", solid.volume());
+    }
+}
