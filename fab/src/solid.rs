@@ -124,6 +124,17 @@ impl Solid {
         Solid(Manifold::compose(&bodies.into_iter().filter(thick).map(|b| b.0).collect::<Vec<_>>()))
     }
 
+    /// What it has in common with four copies, each moved by `by` mm along all three axes: walls thinner than that vanish, and
+    /// none of its surface is left where it was.
+    pub fn narrowed(&self, by: f64) -> Solid {
+        TETRAHEDRON.iter().fold(self.clone(), |all, &c| all.common(&self.moved(c * by)))
+    }
+
+    /// Its union with the same four copies.
+    pub fn widened(&self, by: f64) -> Solid {
+        TETRAHEDRON.iter().fold(self.clone(), |all, &c| all.with(&self.moved(c * by)))
+    }
+
     /// Whether triangles of its surface cross: then no volume of it means anything.
     pub fn crosses_itself(&self) -> bool {
         self.0.has_self_intersections()
@@ -135,6 +146,14 @@ impl Solid {
         loops.into_iter().map(|l| l.into_iter().map(|p| DVec2::new(p.x, p.y)).collect()).collect()
     }
 }
+
+/// Four ways of which every direction has one to within 55 degrees.
+const TETRAHEDRON: [DVec3; 4] = [
+    DVec3::new(1.0, 1.0, 1.0),
+    DVec3::new(1.0, -1.0, -1.0),
+    DVec3::new(-1.0, 1.0, -1.0),
+    DVec3::new(-1.0, -1.0, 1.0),
+];
 
 /// The mesh with its triangles in the order of their corners' coordinates, and vertices in the order of their first use: the
 /// kernel's own order is that in which its solids were made, and those are made on all threads.

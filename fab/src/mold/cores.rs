@@ -193,7 +193,9 @@ fn rooms(view: &View, left: &Solid, enough: f64) -> Result<Vec<Solid>, NotSolid>
     let above = |t: usize| part.corners(t).iter().any(|c| c.dot(d) > low);
     let shade = Solid::all(seen.rooted(&seen.looking(Look::Down, above), To::Against(low - BEYOND))?);
     let air = left.minus(&shade).thick(FINE);
-    let bodies = air.bodies().into_iter().map(|b| b.mesh()).filter(|m| m.volume() > enough);
+    // Skins, which two walls leave between them, and which may hang on to more than that, need no shaft.
+    let bodies =
+        air.narrowed(FINE / 2.0).bodies().into_iter().map(|b| b.mesh()).filter(|m| m.volume() > enough);
     let shafts: Vec<Solid> = bodies.filter_map(|m| shaft(view, &m)).collect();
     Ok(shafts.into_iter().map(|s| cleared(&s, &shade, view.turn)).collect())
 }
@@ -223,9 +225,7 @@ const ASIDE: f64 = 80.0 * stl::GRID;
 
 /// From below a body of air out of the block: the hull of its outline, set off by `SEAT` and widened by draft.
 fn shaft(view: &View, air: &Mesh) -> Option<Solid> {
-    let thick = bulk(air);
-    let corners = thick.iter().flat_map(|&t| air.corners(t)).map(|v| view.turn * v);
-    let points: Vec<DVec3> = corners.collect();
+    let points: Vec<DVec3> = air.vertices.iter().map(|&v| view.turn * v).collect();
     let foot = points.iter().map(|p| p.z).fold(f64::INFINITY, f64::min) - BEYOND;
     let outline = hull(points.into_iter().map(flat).collect());
     let wide = |level: f64| SEAT + (level - foot) * view.tan;
@@ -247,18 +247,6 @@ fn circle(middle: DVec2, radius: f64) -> impl Iterator<Item = DVec2> {
     (0..SIDES).map(move |k| {
         middle + DVec2::from_angle(std::f64::consts::TAU * (f64::from(k) + 0.5) / f64::from(SIDES)) * r
     })
-}
-
-/// Facets behind which there is more than round-off: skins that two walls leave between them do not count.
-fn bulk(air: &Mesh) -> Vec<usize> {
-    let tree = Bvh::new(air);
-    let thick = |t: &usize| {
-        let [a, b, c] = air.corners(*t);
-        let inward = -(b - a).cross(c - a).normalize_or_zero();
-        let middle = (a + b + c) / 3.0 + inward * (FINE / 2.0);
-        !ray::first((air, &tree), middle, inward, 0.0).is_none_or(|h| h.at < FINE / 2.0)
-    };
-    (0..air.triangles.len()).filter(thick).collect()
 }
 
 /// How far the block goes along a direction.

@@ -23,11 +23,7 @@ pub struct Place<'a> {
 
 impl Place<'_> {
     pub fn new(part: &Solid, margin: f64) -> Place<'_> {
-        let corners = [DVec3::new(1.0, 1.0, 1.0), DVec3::new(1.0, -1.0, -1.0)];
-        let corners = corners.into_iter().flat_map(|c| [c, DVec3::new(-c.x, -c.y, c.z)]);
-        let moved: Vec<Solid> = corners.map(|c| part.moved(c * SKIN)).collect();
-        let inner = moved.iter().fold(part.clone(), |p, m| p.common(m));
-        let outer = moved.iter().fold(part.clone(), |p, m| p.with(m));
+        let (inner, outer) = (part.narrowed(SKIN), part.widened(SKIN));
         Place { part, inner, outer, margin }
     }
 
