@@ -52,6 +52,8 @@ beyond = 1;
 aside = @aside@;
 // How many times that copies of one core stand apart: the steps between them stay larger than those beside what is only aside.
 copies_apart = 4;
+// How much less a core's place is moved where it is made itself: of a small one the skin would count.
+finer = 8;
 
 module box(a, b) { translate(a) cube(b - a); }
 
@@ -102,7 +104,7 @@ module upper() difference() {
 }
 
 module core(k) if (core_rooms[k] == "") place(k);
-else difference() { translate(aside) place(k); import(part, convexity = 20); }
+else difference() { translate(aside / finer) place(k); import(part, convexity = 20); }
 
 if (half == "lower" || half == "all") lower();
 if (half == "upper") upper();

@@ -60,7 +60,7 @@ pub fn on_grid(mesh: &Mesh) -> Mesh {
 /// `None`.
 pub fn settled(solid: &Solid) -> Option<(Mesh, f64)> {
     let mut closed = None;
-    for candidate in closed_on_grid(solid) {
+    for candidate in closed_on_grid(solid, COARSEST) {
         if let Some(plain) = plain(solid, &candidate) {
             return Some(plain);
         }
@@ -134,15 +134,19 @@ fn without_folds(mut mesh: Mesh) -> Mesh {
 
 /// The solid as `settled`, or nothing where triangles would cross: what further booleans can rest on.
 pub fn uncrossed(solid: &Solid) -> Option<Solid> {
-    let found = closed_on_grid(solid).find_map(|c| plain(solid, &c));
-    found.and_then(|(mesh, _)| Solid::of(&mesh).ok())
+    uncrossed_to(solid, COARSEST).and_then(|(mesh, _)| Solid::of(&mesh).ok())
 }
 
-/// Closed meshes of the solid on `GRID` with more and more detail united.
-fn closed_on_grid(solid: &Solid) -> impl Iterator<Item = Candidate> {
+/// The solid as `settled`, or nothing where triangles would cross; detail up to `coarsest` mm may be united for it.
+pub fn uncrossed_to(solid: &Solid, coarsest: f64) -> Option<(Mesh, f64)> {
+    closed_on_grid(solid, coarsest).find_map(|c| plain(solid, &c))
+}
+
+/// Closed meshes of the solid on `GRID` with more and more detail united, up to `coarsest` mm.
+fn closed_on_grid(solid: &Solid, coarsest: f64) -> impl Iterator<Item = Candidate> {
     let whole = solid.mesh();
-    let finest = details(&whole).next().unwrap_or(COARSEST);
-    let sizes = details(&whole);
+    let finest = details(&whole, coarsest).next().unwrap_or(coarsest);
+    let sizes = details(&whole, coarsest);
     let as_it_is = std::iter::once_with(move || {
         let (mesh, went) = mended(on_grid(&whole), finest);
         Candidate { mesh, size: finest + went, by: By::Moving }
@@ -170,11 +174,11 @@ fn crossings(mesh: &Mesh) -> Vec<Crossing> {
     cross::within(mesh, &Bvh::new(mesh)).unwrap_or_default()
 }
 
-/// Sizes of detail to do without, in mm: from `FINEST` snaps of the mesh, doubling up to `COARSEST`.
-pub fn details(mesh: &Mesh) -> impl Iterator<Item = f64> + use<> {
+/// Sizes of detail to do without, in mm: from `FINEST` snaps of the mesh, doubling up to `coarsest`.
+pub fn details(mesh: &Mesh, coarsest: f64) -> impl Iterator<Item = f64> + use<> {
     let (lo, hi) = mesh.bounds();
     let snap = grid_distance(lo.abs().max(hi.abs()).max_element());
-    std::iter::successors(Some(FINEST * snap), |s| Some(s * 2.0)).take_while(|s| *s <= COARSEST)
+    std::iter::successors(Some(FINEST * snap), |s| Some(s * 2.0)).take_while(move |s| *s <= coarsest)
 }
 
 /// The mesh with both ends of each edge united that is shorter than `size` and not between two opposite triangles, and how far
@@ -204,7 +208,7 @@ fn moved(mesh: &Mesh, vertices: &[DVec3]) -> (Mesh, f64) {
 const FINEST: f64 = 4.0;
 
 /// No detail of a mold is as small as this, mm: a tenth of the finest layer.
-const COARSEST: f64 = 0.002;
+pub const COARSEST: f64 = 0.002;
 
 pub fn write(mesh: &Mesh, out: &mut dyn Write) -> io::Result<()> {
     let triangles: Vec<stl_io::Triangle> = (0..mesh.triangles.len())

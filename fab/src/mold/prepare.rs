@@ -108,7 +108,7 @@ fn uncrossed(part: &Mesh, solid: &Solid) -> Result<Checked, MoldError> {
     let Some(first) = crossings(part)?.first().copied() else {
         return Ok(Checked { mesh: part.clone(), mended: None });
     };
-    for size in stl::details(part) {
+    for size in stl::details(part, stl::COARSEST) {
         let plain = solid.plain(size).mesh();
         let same = (plain.volume() - part.volume()).abs() <= MENDED_SHARE * part.volume();
         if same && plain.closure() == Closure::Closed && crossings(&plain)?.is_empty() {

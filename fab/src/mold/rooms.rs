@@ -5,7 +5,9 @@
 //! the part's place does not matter: so the part is added, or that place left but for a margin around the core. What comes
 //! of it is compared with the core. Not promised: that one of these is a solid.
 
+use crate::cross::encloses;
 use crate::files::stl;
+use crate::mesh::Mesh;
 use crate::mold::cores::{Core, FINE};
 use crate::mold::make::Settled;
 use crate::solid::Solid;
@@ -14,32 +16,50 @@ use glam::DVec3;
 /// What the rooms of a mold's cores are made with.
 pub struct Place<'a> {
     part: &'a Solid,
-    /// The part but for a skin, and with one more: so that they have no wall in common with the part.
+    mesh: Mesh,
+    /// The part but for a skin, so that it has no wall in common with the part.
     inner: Solid,
-    outer: Solid,
     /// How far a core's margin goes into the part, mm.
     margin: f64,
 }
 
 impl Place<'_> {
     pub fn new(part: &Solid, margin: f64) -> Place<'_> {
-        let (inner, outer) = (part.narrowed(SKIN), part.widened(SKIN));
-        Place { part, inner, outer, margin }
+        let (inner, mesh) = (part.narrowed(SKIN), part.mesh());
+        Place { part, inner, mesh, margin }
     }
 
     /// A room for the core as a file can hold it.
     pub fn room(&self, core: &Core) -> Option<(Solid, Settled)> {
         let near = || core.shaft.common(&self.around(&core.solid));
-        let plain = || stl::uncrossed(&core.solid).unwrap_or_else(Solid::nothing);
-        let grown = || plain().with(&self.outer.common(&self.around(&plain())));
         let ways: [&dyn Fn() -> Solid; 5] = [
             &|| core.shaft.clone(),
             &|| core.shaft.with(&self.inner),
             &near,
             &|| near().with(&self.inner),
-            &grown,
+            &|| self.pressed(core),
         ];
         ways.into_iter().find_map(|way| self.kept(holding(&way(), core), core))
+    }
+
+    /// The core with its walls against the part pressed into it by a skin.
+    fn pressed(&self, core: &Core) -> Solid {
+        let Some((mesh, _)) = stl::uncrossed_to(&core.solid, stl::COARSEST) else { return Solid::nothing() };
+        let mut against: Vec<Vec<DVec3>> = vec![vec![]; mesh.vertices.len()];
+        for (t, corners) in mesh.triangles.iter().enumerate() {
+            let [a, b, c] = mesh.corners(t);
+            let out = (b - a).cross(c - a).normalize_or_zero();
+            if encloses(&self.mesh, (a + b + c) / 3.0 + out * (FINE / 2.0)) {
+                corners.iter().for_each(|&v| against[v as usize].push(out));
+            }
+        }
+        let into = |normals: &Vec<DVec3>| {
+            let way = normals.iter().sum::<DVec3>().normalize_or_zero();
+            let least = normals.iter().map(|n| n.dot(way)).fold(1.0, f64::min);
+            way * SKIN / least.max(STEEP)
+        };
+        let vertices = mesh.vertices.iter().zip(&against).map(|(v, n)| v + into(n)).collect();
+        Solid::of(&Mesh { vertices, ..mesh }).unwrap_or_else(|_| Solid::nothing())
     }
 
     fn around(&self, solid: &Solid) -> Solid {
@@ -50,7 +70,7 @@ impl Place<'_> {
 
     /// The room, if a file can hold it and it leaves the core.
     fn kept(&self, room: Solid, core: &Core) -> Option<(Solid, Settled)> {
-        let (mesh, size) = stl::settled(&room).filter(|(m, _)| stl::is_plain(m))?;
+        let (mesh, size) = stl::uncrossed_to(&room, COARSEST)?;
         let left = Solid::of(&mesh).ok()?.minus(self.part).thick(FINE);
         let apart = left.minus(&core.solid).volume() + core.solid.minus(&left).volume();
         (apart <= SAME * core.solid.volume()).then_some((room, Some((mesh, size))))
@@ -65,6 +85,12 @@ fn holding(room: &Solid, core: &Core) -> Solid {
 
 /// Cores that differ by less than this share of their volume are the same: half of what two kernels may differ by.
 const SAME: f64 = crate::check::openscad::VOLUME_TOLERANCE / 2.0;
+
+/// Detail up to this may be united in a room, mm: a fifth of the finest layer. What it does to the core is measured.
+const COARSEST: f64 = 0.02;
+
+/// Where walls meet in an edge sharper than this (a cosine), it is pressed in less than they are.
+const STEEP: f64 = 0.25;
 
 /// Depth of the skin, mm, along each axis: twice what the source moves rooms by, so that they stay within the part.
 const SKIN: f64 = 320.0 * stl::GRID;
