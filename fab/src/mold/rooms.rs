@@ -44,7 +44,7 @@ impl Place<'_> {
 
     /// The core with its walls against the part pressed into it by a skin.
     fn pressed(&self, core: &Core) -> Solid {
-        let Some((mesh, _)) = stl::uncrossed_to(&core.solid, stl::COARSEST) else { return Solid::nothing() };
+        let Some((mesh, _)) = stl::uncrossed_to(&core.solid, COARSEST) else { return Solid::nothing() };
         let mut against: Vec<Vec<DVec3>> = vec![vec![]; mesh.vertices.len()];
         for (t, corners) in mesh.triangles.iter().enumerate() {
             let [a, b, c] = mesh.corners(t);
