@@ -12,8 +12,8 @@ parting = @parting@;
 
 /* [Cores] */
 core_names = @core_names@;
-// Each core with all the room that it takes: all air of the part that the halves do not reach. Empty where that room
-// touches itself: there the core is taken as it is.
+// Each core with a room that goes into the part: less the part it is the core. Empty where no such room is a solid: there
+// the core is taken as it is.
 core_rooms = @core_rooms@;
 core_files = @core_files@;
 core_pulls = @core_pulls@;

@@ -1,9 +1,9 @@
 //! Takes a side core, the room of its shaft, and the part; gives a solid that a file can hold and that, less the part, is the
 //! core: what the OpenSCAD source reads instead of the core, to make the core again.
 //!
-//! A room goes through the part, and touches itself there in lines, which is no solid to other kernels. What it takes of
-//! the part's place does not matter: so the part is added, or that place left but for a margin around the core. What comes
-//! of it is compared with the core. Not promised: that one of these is a solid.
+//! A shaft goes through the part, and may touch itself there in lines, which is no solid to other kernels. What a room takes
+//! of the part's place does not matter: so the part is added, or that place left but for a margin around the core, or the
+//! core itself pressed into it. What comes of it is compared with the core. Not promised: that one of these is a solid.
 
 use crate::cross::encloses;
 use crate::files::stl;
@@ -86,7 +86,7 @@ fn holding(room: &Solid, core: &Core) -> Solid {
 /// Cores that differ by less than this share of their volume are the same: half of what two kernels may differ by.
 const SAME: f64 = crate::check::openscad::VOLUME_TOLERANCE / 2.0;
 
-/// Detail up to this may be united in a room, mm: a fifth of the finest layer. What it does to the core is measured.
+/// Detail up to this may be united in a room, mm: the finest layer. What it does to the core is measured.
 const COARSEST: f64 = 0.02;
 
 /// Where walls meet in an edge sharper than this (a cosine), it is pressed in less than they are.
