@@ -22,6 +22,12 @@ pub struct NotSolid(pub String);
 
 impl Solid {
     pub fn of(mesh: &Mesh) -> Result<Solid, NotSolid> {
+        let solid = Solid::or_nothing(mesh)?;
+        if solid.is_empty() { Err(NotSolid("the mesh has no volume".into())) } else { Ok(solid) }
+    }
+
+    /// The same, or nothing where the mesh is flat but for round-off.
+    pub fn or_nothing(mesh: &Mesh) -> Result<Solid, NotSolid> {
         let raw = MeshGL64 {
             num_prop: 3,
             vert_properties: mesh.vertices.iter().flat_map(|v| v.to_array()).collect(),
@@ -31,7 +37,6 @@ impl Solid {
         let solid = Manifold::from_mesh_gl64(&raw);
         let no = |why: &str| Err(NotSolid(why.to_string()));
         match solid.status() {
-            Error::NoError if solid.is_empty() => no("the mesh has no volume"),
             Error::NoError => Ok(Solid(solid)),
             Error::NonFiniteVertex => no("a corner is not a finite number"),
             Error::NotManifold => no("the mesh is not closed: an edge is not between two opposite triangles"),

@@ -69,7 +69,7 @@ impl<'a> Seen<'a> {
         begin: impl Fn(DVec3) -> DVec3,
     ) -> Result<Vec<Solid>, NotSolid> {
         let patches = patches(&self.turned, &self.mesh.triangles, facets);
-        patches.iter().map(|p| Solid::of(&self.hung(p, to, &begin))).collect()
+        patches.iter().map(|p| Solid::or_nothing(&self.hung(p, to, &begin))).collect()
     }
 
     /// The body between a patch and the plane.
