@@ -135,6 +135,11 @@ impl Solid {
         TETRAHEDRON.iter().fold(self.clone(), |all, &c| all.common(&self.moved(c * by)))
     }
 
+    /// Its union with the same four copies: gaps thinner than that are filled.
+    pub fn widened(&self, by: f64) -> Solid {
+        TETRAHEDRON.iter().fold(self.clone(), |all, &c| all.with(&self.moved(c * by)))
+    }
+
     /// Whether triangles of its surface cross: then no volume of it means anything.
     pub fn crosses_itself(&self) -> bool {
         self.0.has_self_intersections()

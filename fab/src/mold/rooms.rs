@@ -3,7 +3,8 @@
 //!
 //! A shaft goes through the part, and may touch itself there in lines, which is no solid to other kernels. What a room takes
 //! of the part's place does not matter: so the part is added, or that place left but for a margin around the core, or the
-//! core itself pressed into it. What comes of it is compared with the core. Not promised: that one of these is a solid.
+//! core itself pressed into it, or a skin wider all around. What comes of it is compared with the core. Not promised: that
+//! one of these is a solid.
 
 use crate::cross::encloses;
 use crate::files::stl;
@@ -32,12 +33,13 @@ impl Place<'_> {
     /// A room for the core as a file can hold it.
     pub fn room(&self, core: &Core) -> Option<(Solid, Settled)> {
         let near = || core.shaft.common(&self.around(&core.solid));
-        let ways: [&dyn Fn() -> Solid; 5] = [
+        let ways: [&dyn Fn() -> Solid; 6] = [
             &|| core.shaft.clone(),
             &|| core.shaft.with(&self.inner),
             &near,
             &|| near().with(&self.inner),
             &|| self.pressed(core),
+            &|| core.solid.widened(SKIN / 4.0),
         ];
         ways.into_iter().find_map(|way| self.kept(holding(&way(), core), core))
     }
