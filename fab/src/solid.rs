@@ -129,15 +129,19 @@ impl Solid {
         Solid(Manifold::compose(&bodies.into_iter().filter(thick).map(|b| b.0).collect::<Vec<_>>()))
     }
 
-    /// What it has in common with four copies, each moved by `by` mm along all three axes: walls thinner than that vanish, and
-    /// none of its surface is left where it was.
-    pub fn narrowed(&self, by: f64) -> Solid {
-        TETRAHEDRON.iter().fold(self.clone(), |all, &c| all.common(&self.moved(c * by)))
+    /// Its union with copies moved in these ways, mm.
+    pub fn with_copies(&self, ways: impl IntoIterator<Item = DVec3>) -> Solid {
+        Solid::all(std::iter::once(self.clone()).chain(ways.into_iter().map(|w| self.moved(w))).collect())
     }
 
-    /// Its union with the same four copies: gaps thinner than that are filled.
+    /// Its union with four copies, each moved by `by` mm along all three axes: thinner gaps are filled.
     pub fn widened(&self, by: f64) -> Solid {
-        TETRAHEDRON.iter().fold(self.clone(), |all, &c| all.with(&self.moved(c * by)))
+        self.with_copies(TETRAHEDRON.map(|c| c * by))
+    }
+
+    /// What it has in common with the same four copies: thinner walls vanish, and every face goes in by 0.57 to 1.74 times that.
+    pub fn narrowed(&self, by: f64) -> Solid {
+        TETRAHEDRON.iter().fold(self.clone(), |all, &c| all.common(&self.moved(c * by)))
     }
 
     /// Whether triangles of its surface cross: then no volume of it means anything.
@@ -152,7 +156,7 @@ impl Solid {
     }
 }
 
-/// Four ways of which every direction has one to within 55 degrees.
+/// Corners of a tetrahedron: of every direction one of them is within 55 degrees, forwards or back.
 const TETRAHEDRON: [DVec3; 4] = [
     DVec3::new(1.0, 1.0, 1.0),
     DVec3::new(1.0, -1.0, -1.0),

@@ -213,8 +213,7 @@ fn cleared(shaft: &Solid, shade: &Solid, turn: DMat3) -> Solid {
 /// A solid with copies of it a little aside, in ways seen where `turn` sets its direction upright: walls along that direction
 /// which only round-off holds apart are passed.
 fn widened(solid: &Solid, turn: DMat3, ways: &[DVec3]) -> Solid {
-    let aside = ways.iter().map(|&a| solid.moved(turn.transpose() * a * ASIDE));
-    Solid::all(std::iter::once(solid.clone()).chain(aside).collect())
+    solid.with_copies(ways.iter().map(|&a| turn.transpose() * a * ASIDE))
 }
 
 /// Four ways square to z.

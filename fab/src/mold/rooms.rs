@@ -32,21 +32,23 @@ impl Place<'_> {
 
     /// A room for the core as a file can hold it.
     pub fn room(&self, core: &Core) -> Option<(Solid, Settled)> {
-        let near = || core.shaft.common(&self.around(&core.solid));
+        let around =
+            || core.solid.with_copies(DVec3::AXES.into_iter().flat_map(|a| [a, -a].map(|a| a * self.margin)));
+        let near = || core.shaft.common(&around());
         let ways: [&dyn Fn() -> Solid; 6] = [
             &|| core.shaft.clone(),
             &|| core.shaft.with(&self.inner),
             &near,
             &|| near().with(&self.inner),
             &|| self.pressed(core),
-            &|| core.solid.widened(SKIN / 4.0),
+            &|| core.solid.widened(WIDER),
         ];
         ways.into_iter().find_map(|way| self.kept(holding(&way(), core), core))
     }
 
     /// The core with its walls against the part pressed into it by a skin.
     fn pressed(&self, core: &Core) -> Solid {
-        let Some((mesh, _)) = stl::uncrossed_to(&core.solid, COARSEST) else { return Solid::nothing() };
+        let Some((mesh, _)) = stl::uncrossed_to(&core.solid, DETAIL) else { return Solid::nothing() };
         let mut against: Vec<Vec<DVec3>> = vec![vec![]; mesh.vertices.len()];
         for (t, corners) in mesh.triangles.iter().enumerate() {
             let [a, b, c] = mesh.corners(t);
@@ -64,15 +66,9 @@ impl Place<'_> {
         Solid::of(&Mesh { vertices, ..mesh }).unwrap_or_else(|_| Solid::nothing())
     }
 
-    fn around(&self, solid: &Solid) -> Solid {
-        let ways = DVec3::AXES.into_iter().flat_map(|a| [a, -a]);
-        let aside = ways.map(|a| solid.moved(a * self.margin));
-        Solid::all(std::iter::once(solid.clone()).chain(aside).collect())
-    }
-
     /// The room, if a file can hold it and it leaves the core.
     fn kept(&self, room: Solid, core: &Core) -> Option<(Solid, Settled)> {
-        let (mesh, size) = stl::uncrossed_to(&room, COARSEST)?;
+        let (mesh, size) = stl::uncrossed_to(&room, DETAIL)?;
         let left = Solid::of(&mesh).ok()?.minus(self.part).thick(FINE);
         let apart = left.minus(&core.solid).volume() + core.solid.minus(&left).volume();
         (apart <= SAME * core.solid.volume()).then_some((room, Some((mesh, size))))
@@ -81,21 +77,28 @@ impl Place<'_> {
 
 /// The bodies of a room that the core is in, without hollows.
 fn holding(room: &Solid, core: &Core) -> Solid {
-    let holds = |b: &Solid| b.mesh().volume() > 0.0 && b.common(&core.solid).volume() > FINE.powi(3);
+    let holds = |b: &Solid| b.mesh().volume() > 0.0 && b.common(&core.solid).volume() > CRUMB;
     Solid::all(room.bodies().into_iter().filter(holds).collect())
 }
+
+/// What round-off leaves of bodies that only touch is less, mm3: a grain of `FINE`.
+const CRUMB: f64 = FINE * FINE * FINE;
 
 /// Cores that differ by less than this share of their volume are the same: half of what two kernels may differ by.
 const SAME: f64 = crate::check::openscad::VOLUME_TOLERANCE / 2.0;
 
 /// Detail up to this may be united in a room, mm: the finest layer. What it does to the core is measured.
-const COARSEST: f64 = 0.02;
+const DETAIL: f64 = 0.02;
 
 /// Where walls meet in an edge sharper than this (a cosine), it is pressed in less than they are.
 const STEEP: f64 = 0.25;
 
-/// Depth of the skin, mm, along each axis: twice what the source moves rooms by, so that they stay within the part.
+/// Skin of the part, mm: so that every face goes in by 185 steps of the grid, and the source, which moves rooms by 158, does not
+/// bring them out again.
 const SKIN: f64 = 320.0 * stl::GRID;
+
+/// How much wider a core is taken all around, mm: eighty steps of the grid, as what the source moves aside.
+const WIDER: f64 = 80.0 * stl::GRID;
 
 #[cfg(test)]
 mod tests {
